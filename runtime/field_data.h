@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "shaders/shared/light_field.h"
+#include "svo/octree.h"
+
+namespace sconce
+{
+
+/// A baked light field in host memory: what a .sconce file holds. Layouts of the words: shaders/shared/light_field.h.
+struct FieldData
+{
+    gpu::LightFieldInfo info{};
+    std::vector<gpu::ProbeHeader> probes;
+    std::vector<uint32_t> distance;   // [probe][info.wordsPerProbe]
+    std::vector<uint32_t> radiance;   // [probe][face][y][x] (cube) or [probe][y][x] (octahedral), R11G11B10F, finest level only
+    std::vector<uint32_t> irradiance; // [probe][kIrradianceSize^2][2]: R11G11B10F cosine-weighted mean radiance (irradiance / pi), then
+                                      // half mean distance | half variance of distance << 16, field units, cosine-power lobe
+    Octree octree;
+    uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
+    uint32_t bounces = 0;
+    std::string sceneName;
+    std::vector<std::string> effects; // names of the effects the scene calls for
+};
+
+/// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.
+struct FieldBytes
+{
+    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0;
+    size_t total() const { return distance + normals + radiance + irradiance + index; }
+};
+FieldBytes bytesByPart(const FieldData& field);
+
+/// Words of one probe's distance map and the coarsest level of its chain, from chart and size. Faces must be a multiple of 4 from 8 to 2048.
+uint32_t coarsestLevel(uint32_t faceSize);
+uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size);
+uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size);
+
+} // namespace sconce

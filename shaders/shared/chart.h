@@ -1,0 +1,71 @@
+// Charts of a probe map: cube faces and the octahedral map (Cigolle et al. 2014, "A Survey of Efficient Representations for Independent
+// Unit Vectors"; Engelhardt and Dachsbacher 2008, "Octahedron Environment Maps"). Shared text, see texel.h.
+
+/// Coordinates of a probe-relative point on a face: (U, V, W); the point is seen by the face when W > 0 and |U|,|V| <= W.
+SCONCE_FN vec3 faceCoordinates(int face, vec3 p)
+{
+    real s = (face & 1) != 0 ? real(-1.0) : real(1.0);
+    if (face < 2) return vec3(p.y, p.z, s * p.x);
+    if (face < 4) return vec3(p.z, p.x, s * p.y);
+    return vec3(p.x, p.y, s * p.z);
+}
+
+/// The inverse of faceCoordinates.
+SCONCE_FN vec3 faceDirection(int face, vec3 uvw)
+{
+    real s = (face & 1) != 0 ? real(-1.0) : real(1.0);
+    if (face < 2) return vec3(s * uvw.z, uvw.x, uvw.y);
+    if (face < 4) return vec3(uvw.y, s * uvw.z, uvw.x);
+    return vec3(uvw.x, uvw.y, s * uvw.z);
+}
+
+/// The face that sees a direction; ties go to the lower axis, zero to face 0.
+SCONCE_FN int dominantFace(vec3 p)
+{
+    real ax = abs(p.x), ay = abs(p.y), az = abs(p.z);
+    if (ax >= ay && ax >= az) return p.x < real(0.0) ? 1 : 0;
+    if (ay >= az) return p.y < real(0.0) ? 3 : 2;
+    return p.z < real(0.0) ? 5 : 4;
+}
+
+/// Octahedral square [0,1]^2 of a direction (any length but zero).
+SCONCE_FN vec2 octahedralFromDirection(vec3 d)
+{
+    real n = abs(d.x) + abs(d.y) + abs(d.z);
+    real x = d.x / n, y = d.y / n;
+    if (d.z < real(0.0))
+    {
+        real fx = (real(1.0) - abs(y)) * (x < real(0.0) ? real(-1.0) : real(1.0));
+        real fy = (real(1.0) - abs(x)) * (y < real(0.0) ? real(-1.0) : real(1.0));
+        x = fx;
+        y = fy;
+    }
+    return vec2(real(0.5) * x + real(0.5), real(0.5) * y + real(0.5));
+}
+
+/// Unit direction of a point of the octahedral square.
+SCONCE_FN vec3 directionFromOctahedral(vec2 uv)
+{
+    real x = real(2.0) * uv.x - real(1.0), y = real(2.0) * uv.y - real(1.0);
+    real z = real(1.0) - abs(x) - abs(y);
+    if (z < real(0.0))
+    {
+        real fx = (real(1.0) - abs(y)) * (x < real(0.0) ? real(-1.0) : real(1.0));
+        real fy = (real(1.0) - abs(x)) * (y < real(0.0) ? real(-1.0) : real(1.0));
+        x = fx;
+        y = fy;
+    }
+    return normalize(vec3(x, y, z));
+}
+
+/// A unit vector in 16 bits, 8 + 8.
+SCONCE_FN uint packNormal8(vec3 n)
+{
+    vec2 uv = octahedralFromDirection(n);
+    return uint(floor(uv.x * real(255.0) + real(0.5))) | (uint(floor(uv.y * real(255.0) + real(0.5))) << 8);
+}
+
+SCONCE_FN vec3 unpackNormal8(uint bits)
+{
+    return directionFromOctahedral(vec2(real(bits & 0xffu) / real(255.0), real((bits >> 8) & 0xffu) / real(255.0)));
+}

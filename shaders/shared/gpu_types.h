@@ -1,0 +1,42 @@
+// What lets one text compile as GLSL and as C++. Structs here use scalar block layout on both sides.
+// Numbers in the shared algorithms are written real(0.5): float on the GPU, float or double in C++.
+#ifndef SCONCE_GPU_TYPES_H
+#define SCONCE_GPU_TYPES_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/packing.hpp>
+#define SCONCE_FN inline
+#define SCONCE_OUT(type) type&
+#define SCONCE_INOUT(type) type&
+#define SCONCE_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
+namespace sconce::gpu
+{
+using uint = std::uint32_t;
+using glm::ivec2;
+using glm::ivec3;
+using glm::ivec4;
+using glm::mat4;
+using glm::uvec2;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+} // namespace sconce::gpu
+#define SCONCE_STRUCTS_BEGIN namespace sconce::gpu {
+#define SCONCE_STRUCTS_END }
+#else
+#extension GL_EXT_scalar_block_layout : require
+#define real float
+#define vec2f vec2
+#define SCONCE_FN
+#define SCONCE_OUT(type) out type
+#define SCONCE_INOUT(type) inout type
+#define SCONCE_CHECK_SIZE(type, bytes)
+#define SCONCE_STRUCTS_BEGIN
+#define SCONCE_STRUCTS_END
+#endif
+
+#endif

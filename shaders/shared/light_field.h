@@ -1,0 +1,64 @@
+// The structs a light field consists of, as they lie in device memory and in the .sconce file.
+//
+// Field space: field = (world - origin) / scale, scale a power of two near the scene's diagonal, so that distances are about 1 whatever
+// the unit of the scene, and scaling a scene by a power of two changes no bit of a trace.
+//
+// Chart "cube": probe map of 6 faces, face f looks along axis f>>1, negative when f&1. With p relative to the probe and a the axis,
+//   W = +-p[a], U = p[(a+1)%3], V = p[(a+2)%3], pixel = N/2 * (U/W + 1, V/W + 1), q = 1/W. Straight lines stay straight and q is
+//   linear along them and over planes.
+// Words of a face: levels 0, 2, 4, ... topLevel one after another, row-major, level l has (N >> l)^2 words; see texel.h.
+// Chart "octahedral": one map of N x N words (level 0: radial distance r and normal), then (N/lowFactor)^2 words of (min r, max r).
+#include "shared/gpu_types.h"
+#ifndef SCONCE_LIGHT_FIELD_H
+#define SCONCE_LIGHT_FIELD_H
+SCONCE_STRUCTS_BEGIN
+
+const uint kChartCube = 0u;
+const uint kChartOctahedral = 1u;
+const uint kNoProbe = 0xffffffffu;
+const int kRanked = 4;             // ranked probes a voxel holds
+const uint kIrradianceSize = 32u;  // texels a side of the octahedral irradiance and moments map
+const uint kLowFactor = 16u;       // texels of the octahedral map a texel of its low-resolution map covers, per axis
+
+struct ProbeHeader
+{
+    vec3 centre;        // field space
+    float freeRadius;   // field units; nothing is nearer to the centre than this
+    vec3 influenceLow;  // half extents of the influence box toward -xyz, field units: median distance per cube face
+    float farthest;     // field units; the largest finite distance in the map
+    vec3 influenceHigh; // the same toward +xyz
+    float unused;
+};
+SCONCE_CHECK_SIZE(ProbeHeader, 48);
+
+struct LightFieldInfo
+{
+    vec3 origin;  // world, metres
+    float scale;  // metres per field unit, a power of two
+    vec3 boundsLow; // field space: the box the octree covers
+    float voxel;    // field units per finest octree voxel
+    vec3 boundsHigh;
+    float diagonal; // field units, of the scene's bounds
+    ivec3 topCells; // cells of the top grid; each covers 2^topShift finest voxels a side
+    int topShift;
+    uvec3 bricks;   // 2x2x2-texel bricks along each axis of the octree's 3D texture
+    uint marker;    // w of an interior texel: 255 for 8-bit indices, 65535 for 16-bit ones
+    uint probeCount;
+    uint chart;        // kChartCube or kChartOctahedral
+    uint faceSize;     // texels a side of a cube face, or of the octahedral map
+    uint topLevel;     // coarsest level of a face's chain; even
+    uint wordsPerProbe; // distance words, all faces and levels
+    uint gridX;         // uniform grid of probes, 0 when they are not one
+    uint gridY;
+    uint gridZ;
+    vec3 gridOrigin; // field space, probe (0,0,0)
+    float unused0;
+    vec3 gridStep;   // field units
+    float unused1;
+    vec3 sky;        // radiance where nothing is hit, W/(m^2 sr)
+    float unused2;
+};
+SCONCE_CHECK_SIZE(LightFieldInfo, 160);
+
+SCONCE_STRUCTS_END
+#endif

@@ -1,0 +1,60 @@
+// Words of a probe's distance map, packed and unpacked. Shared text: included by GLSL, and by C++ inside a struct that names `real`.
+//
+// Level 0: bits 0..15 half float q = 1/W at the texel's centre (0: sky), bits 16..23 and 24..31 signed bytes gx, gy: the surfel's plane.
+//   q over the texel = q (1 + g.x dx + g.y dy), dx, dy in texels from the centre, g = kGradientScale s |s|, s = byte / 127.
+// Level 2, 4, ...: bits 0..15 half float maximum of q over the texel (nearest surface, rounded up), bits 16..31 minimum (rounded down).
+// Octahedral level 0: bits 0..15 half float r (0x7c00: sky), bits 16..31 octahedral normal, 8 + 8 bits. Low level: (min r, max r).
+
+#ifdef __cplusplus
+static constexpr real kGradientScale = real(0.15);
+#else
+const real kGradientScale = real(0.15);
+#endif
+
+SCONCE_FN real halfToReal(uint bits) { return real(unpackHalf2x16(bits & 0xffffu).x); }
+
+/// Half float bits of a non-negative number, to nearest, saturated at the largest half.
+SCONCE_FN uint realToHalf(real value) { return packHalf2x16(vec2f(float(min(value, real(65504.0))), 0.0f)) & 0xffffu; }
+
+SCONCE_FN uint realToHalfUp(real value)
+{
+    uint bits = realToHalf(value);
+    return (halfToReal(bits) < value && bits < 0x7bffu) ? bits + 1u : bits;
+}
+
+SCONCE_FN uint realToHalfDown(real value)
+{
+    uint bits = realToHalf(value);
+    return (halfToReal(bits) > value && bits > 0u) ? bits - 1u : bits;
+}
+
+/// g: relative gradient of q a texel; beyond +-kGradientScale it saturates.
+SCONCE_FN uint packGradient(real g)
+{
+    real s = sqrt(min(abs(g) / kGradientScale, real(1.0)));
+    int byte = int(floor(s * real(127.0) + real(0.5)));
+    return uint(g < real(0.0) ? -byte : byte) & 0xffu;
+}
+
+SCONCE_FN real unpackGradient(uint byte)
+{
+    int value = int(byte & 0xffu);
+    if (value > 127) value -= 256;
+    real s = real(value) / real(127.0);
+    return kGradientScale * s * abs(s);
+}
+
+SCONCE_FN uint packTexel(real q, real gx, real gy)
+{
+    return realToHalf(q) | (packGradient(gx) << 16) | (packGradient(gy) << 24);
+}
+
+/// Bounds of q over a level 0 texel, rounded outward, as a word of a coarser level.
+SCONCE_FN uint texelBounds(uint word)
+{
+    real q = halfToReal(word);
+    real spread = real(0.5) * (abs(unpackGradient(word >> 16)) + abs(unpackGradient(word >> 24)));
+    return realToHalfUp(q * (real(1.0) + spread) * real(1.000001)) | (realToHalfDown(q * (real(1.0) - spread) * real(0.999999)) << 16);
+}
+
+SCONCE_FN uint joinBounds(uint a, uint b) { return max(a & 0xffffu, b & 0xffffu) | (min(a >> 16, b >> 16) << 16); }
