@@ -57,8 +57,24 @@ struct LightFieldInfo
     float unused1;
     vec3 sky;        // radiance where nothing is hit, W/(m^2 sr)
     float unused2;
+    vec3 sceneLow;   // field space: the scene's bounds
+    float unused3;
+    vec3 sceneHigh;
+    float unused4;
 };
-SCONCE_CHECK_SIZE(LightFieldInfo, 160);
+SCONCE_CHECK_SIZE(LightFieldInfo, 192);
+
+/// The knobs of a trace. Defaults and prices: runtime/quality.h.
+struct TraceQuality
+{
+    int ranked;        // probes of a leaf that are asked, 1..kRanked
+    int maxHandoffs;   // probes a ray may change to, 0..64
+    int startLevel;    // level of the chain a segment starts at; even, 0..topLevel
+    int coarsestLevel; // coarsest level climbed to; even
+    float tolerance;   // scale of the hit rule's thickness, 1: derived from the texel's footprint
+    float epsilon;     // absolute slack, share of the scene's diagonal
+};
+SCONCE_CHECK_SIZE(TraceQuality, 24);
 
 SCONCE_STRUCTS_END
 #endif

@@ -1,0 +1,41 @@
+// Which probes a point asks. Shared text: GLSL, or C++ inside a struct that names `real`, holds `field` (LightFieldInfo) and defines
+// uvec4 octreeTexel(ivec3). Layout of the texture: svo/octree.h. After Wang et al. 2019, section 4.1 (leaf-only octree in a 3D texture).
+
+SCONCE_FN ivec3 octreeBrickTexel(uint brick)
+{
+    uint row = brick / field.bricks.x;
+    return ivec3(int(2u * (brick % field.bricks.x)), int(2u * (row % field.bricks.y)), int(2u * (row / field.bricks.y)));
+}
+
+/// Finest voxel of a point in field space; a point outside the bounds, or not a number, gets the nearest one.
+SCONCE_FN ivec3 octreeVoxel(vec3 p)
+{
+    ivec3 count = ivec3(field.topCells.x << field.topShift, field.topCells.y << field.topShift, field.topCells.z << field.topShift);
+    vec3 v = (p - vec3(field.boundsLow)) / real(field.voxel);
+    // min first: it replaces a NaN by a number on every side
+    real x = max(min(v.x, real(count.x) - real(0.5)), real(0.0));
+    real y = max(min(v.y, real(count.y) - real(0.5)), real(0.0));
+    real z = max(min(v.z, real(count.z) - real(0.5)), real(0.0));
+    return ivec3(int(x), int(y), int(z));
+}
+
+/// The up to four ranked probes of the leaf that holds p (field space), best first; a leaf with fewer repeats some. Cost: 1 + topShift
+/// reads at most, added to `reads`.
+SCONCE_FN uvec4 rankedProbesAt(vec3 p, SCONCE_INOUT(int) reads)
+{
+    ivec3 voxel = octreeVoxel(p);
+    ivec3 top = ivec3(voxel.x >> field.topShift, voxel.y >> field.topShift, voxel.z >> field.topShift);
+    ivec3 topBricks = ivec3((field.topCells.x + 1) >> 1, (field.topCells.y + 1) >> 1, (field.topCells.z + 1) >> 1);
+    uint brick = uint((top.x >> 1) + topBricks.x * ((top.y >> 1) + topBricks.y * (top.z >> 1)));
+    ivec3 child = ivec3(top.x & 1, top.y & 1, top.z & 1);
+    uvec4 texel = octreeTexel(octreeBrickTexel(brick) + child);
+    ++reads;
+    for (int level = field.topShift - 1; level >= 0 && texel.w == field.marker; --level)
+    {
+        brick = field.marker == 255u ? (texel.x | (texel.y << 8) | (texel.z << 16)) : (texel.x | (texel.y << 16));
+        child = ivec3((voxel.x >> level) & 1, (voxel.y >> level) & 1, (voxel.z >> level) & 1);
+        texel = octreeTexel(octreeBrickTexel(brick) + child);
+        ++reads;
+    }
+    return texel;
+}

@@ -1,0 +1,576 @@
+// The tracer: one ray through the light field, cube-face chart. Shared text: GLSL, or C++ inside a struct that names `real` and holds
+// `field` (LightFieldInfo), `quality` (TraceQuality), and defines ProbeHeader probeHeader(uint), uint distanceWord(uint), octreeTexel().
+//
+// Along one cube face the pixel P, q = 1/W and t q are linear in one screen parameter s in [0,1], and a surfel's plane is linear in (P, q):
+// the march needs no division, root or normalisation. It steps a min/max chain (here its maxima of q: the nearest surface of a texel) as a
+// Hi-Z march does (Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections"; Wang et al. 2019, section 4.2), and ends in the plane of one
+// surfel. What one probe can't tell (UNKNOWN) is handed to the next probe of the octree's leaf at that point, with the ray re-entered
+// BEFORE the cell that blocked it, so that the next probe misses nothing (Donow 2016, section on back faces).
+// All lengths are field units (light_field.h).
+
+const uint kMiss = 0u;
+const uint kHit = 1u;
+const uint kUnknown = 2u;
+
+const int kPhaseChoose = 0;
+const int kPhaseSegment = 1;
+const int kPhaseMarch = 2;
+const int kPhaseFine = 3;
+const int kPhaseDone = 4;
+
+const int kMarchSteps = 8;    // march steps a turn of the state machine, before other lanes' events get their turn
+const int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
+const int kMaxTried = 12;     // probes remembered as tried without progress: three lists of four
+
+struct RayState
+{
+    vec3 origin;    // field space
+    vec3 direction; // unit
+    real tMax;
+    real t;         // reached so far: everything before is known to be free
+    int phase;
+    uint status;
+    // probe
+    uint probe;
+    vec3 relative;  // origin relative to the probe's centre
+    real freeBall;  // radius about the centre with nothing in it
+    int face;
+    int segments;   // of this probe so far
+    bool fresh;     // no texel of this probe has been passed yet
+    real tClear;    // t at which the tried set was last cleared
+    uint tried[kMaxTried];
+    int triedCount;
+    // segment of the ray on a face
+    real ta;
+    real tb;
+    int nextFace;   // face behind the side plane the ray leaves through, -1: end of the ray, -2: the free ball, look again
+    uint faceWords; // first word of the face
+    vec2 P;
+    vec2 dP;        // mirrored so that both are >= 0
+    vec2 iP;
+    real q0;
+    real dq;
+    real idq;
+    real tq0;
+    real dtq;
+    int mirrorX;    // 0 or -1
+    int mirrorY;
+    int ix;
+    int iy;
+    int ex;
+    int ey;
+    int level;
+    real s;
+    real sEnd;      // end of the current texel
+    int came;       // how the current cell was entered: 0 not through a border, 1 in x, 2 in y
+    uint word;      // texel of the fine event
+    // what happened
+    int handoffs;
+    int distanceReads;
+    int indexReads;
+    // where the last surfel was met
+    vec2 pixel;     // unmirrored, of `face`
+    uint hitWord;
+    uint lastProbe; // probe of the last surfel, kNoProbe: none
+    int lastFace;
+};
+
+struct TraceResult
+{
+    uint status;      // kHit, kMiss, kUnknown
+    real t;           // field units: the hit, or the last point reached
+    uint probe;       // that answered; kNoProbe: none
+    int face;         // where the surfel lies; -1: none
+    vec2 pixel;
+    uint word;
+    int handoffs;
+    int distanceReads;
+    int indexReads;
+};
+
+SCONCE_FN uint levelOffset(int level)
+{
+    uint offset = 0u;
+    for (int l = 0; l < level; l += 2) offset += (field.faceSize >> l) * (field.faceSize >> l);
+    return offset;
+}
+
+/// The time at which the ray leaves the field's box, enlarged by 2 % so that a wall on its border is met; 0 when it never is inside.
+SCONCE_FN real fieldExit(vec3 o, vec3 d)
+{
+    vec3 low = vec3(field.sceneLow) - real(0.02) * real(field.diagonal);
+    vec3 high = vec3(field.sceneHigh) + real(0.02) * real(field.diagonal);
+    real enter = real(0.0);
+    real leave = real(4.0) * real(field.diagonal) + length(o);
+    for (int a = 0; a < 3; ++a)
+    {
+        if (abs(d[a]) < real(1e-12))
+        {
+            if (o[a] < low[a] || o[a] > high[a]) return real(0.0);
+            continue;
+        }
+        real t0 = (low[a] - o[a]) / d[a];
+        real t1 = (high[a] - o[a]) / d[a];
+        enter = max(enter, min(t0, t1));
+        leave = min(leave, max(t0, t1));
+    }
+    return leave > enter ? leave : real(0.0);
+}
+
+SCONCE_FN bool wasTried(RayState r, uint probe)
+{
+    for (int i = 0; i < r.triedCount; ++i)
+        if (r.tried[i] == probe) return true;
+    return false;
+}
+
+/// Next probe: the leaf's list at the point reached, then the lists a little further on. Ends the ray as UNKNOWN when all were asked.
+SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
+{
+    if (r.t >= r.tMax)
+    {
+        r.status = kMiss;
+        r.phase = kPhaseDone;
+        return;
+    }
+    if (r.handoffs > quality.maxHandoffs)
+    {
+        r.status = kUnknown;
+        r.phase = kPhaseDone;
+        return;
+    }
+    if (r.t > r.tClear + real(1e-4) * real(field.diagonal) && r.triedCount > 0)
+    {
+        r.tried[0] = r.tried[r.triedCount - 1];
+        r.triedCount = 1;
+        r.tClear = r.t;
+    }
+    uint found = kNoProbe;
+    for (int list = 0; list < 3 && found == kNoProbe; ++list)
+    {
+        real ahead = list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75));
+        uvec4 ranked = rankedProbesAt(r.origin + (r.t + ahead * real(field.voxel)) * r.direction, r.indexReads);
+        for (int k = 0; k < quality.ranked && found == kNoProbe; ++k)
+            if (!wasTried(r, ranked[k])) found = ranked[k];
+    }
+    if (found == kNoProbe || r.triedCount >= kMaxTried)
+    {
+        r.status = kUnknown;
+        r.phase = kPhaseDone;
+        return;
+    }
+    r.tried[r.triedCount] = found;
+    ++r.triedCount;
+    ++r.handoffs;
+    r.probe = found;
+    ProbeHeader header = probeHeader(found);
+    r.relative = r.origin - vec3(header.centre);
+    r.freeBall = real(0.5) * real(header.freeRadius);
+    r.segments = 0;
+    r.fresh = true;
+    r.nextFace = -2;
+    r.ta = r.t;
+    r.phase = kPhaseSegment;
+}
+
+/// The piece of the ray from r.ta to where it leaves the face, the free ball's surroundings or the field.
+SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
+{
+    // inside the ball about the centre nothing can be met: leave it (this also removes the singularity at W = 0)
+    real b = dot(r.relative, r.direction);
+    vec3 nearest = r.relative - b * r.direction;
+    real h2 = r.freeBall * r.freeBall - dot(nearest, nearest);
+    real ballIn = real(3e38);
+    if (h2 > real(0.0))
+    {
+        real h = sqrt(h2);
+        real ballOut = h - b;
+        if (r.ta >= -h - b && r.ta < ballOut)
+        {
+            r.ta = ballOut;
+            r.nextFace = -2;
+        }
+        else if (r.ta < -h - b) ballIn = -h - b;
+    }
+    ++r.segments;
+    if (r.ta >= r.tMax || r.nextFace == -1)
+    {
+        r.t = r.tMax;
+        r.status = kMiss;
+        r.phase = kPhaseDone;
+        return;
+    }
+    if (r.segments > kMaxSegments)
+    {
+        r.t = max(r.t, r.ta);
+        r.phase = kPhaseChoose;
+        return;
+    }
+    r.face = r.nextFace >= 0 ? r.nextFace : dominantFace(r.relative + r.ta * r.direction);
+
+    vec3 f0 = faceCoordinates(r.face, r.relative);
+    vec3 f1 = faceCoordinates(r.face, r.direction);
+    real tb = r.tMax;
+    int next = -1;
+    if (ballIn < tb)
+    {
+        tb = ballIn;
+        next = -2;
+    }
+    for (int plane = 0; plane < 4; ++plane)
+    {
+        real side = (plane & 1) != 0 ? real(1.0) : real(-1.0); // W - U, W + U, W - V, W + V
+        real g0 = f0.z + side * (plane < 2 ? f0.x : f0.y);
+        real g1 = f1.z + side * (plane < 2 ? f1.x : f1.y);
+        if (g1 < real(0.0))
+        {
+            real t = -g0 / g1;
+            if (t < tb)
+            {
+                tb = t;
+                int axis = (r.face >> 1) + (plane < 2 ? 1 : 2);
+                next = 2 * (axis % 3) + (plane & 1);
+            }
+        }
+    }
+    r.tb = max(tb, r.ta);
+    r.nextFace = next;
+
+    real size = real(field.faceSize);
+    real Wa = f0.z + r.ta * f1.z;
+    real Wb = f0.z + r.tb * f1.z;
+    if (!(Wa > real(0.0)) || !(Wb > real(0.0))) // a corner of rounding: nothing of the ray lies on this face
+    {
+        r.ta = r.tb;
+        if (r.tb <= r.t) r.nextFace = -2;
+        return;
+    }
+    real qa = real(1.0) / Wa;
+    real qb = real(1.0) / Wb;
+    real edge = real(0.000244140625); // 2^-12 texel: a ray that lies in a face's border belongs to this side of it
+    vec2 Pa = vec2(clamp(real(0.5) * size * ((f0.x + r.ta * f1.x) * qa + real(1.0)), edge, size - edge),
+                   clamp(real(0.5) * size * ((f0.y + r.ta * f1.y) * qa + real(1.0)), edge, size - edge));
+    vec2 Pb = vec2(clamp(real(0.5) * size * ((f0.x + r.tb * f1.x) * qb + real(1.0)), edge, size - edge),
+                   clamp(real(0.5) * size * ((f0.y + r.tb * f1.y) * qb + real(1.0)), edge, size - edge));
+    r.mirrorX = Pb.x < Pa.x ? -1 : 0;
+    r.mirrorY = Pb.y < Pa.y ? -1 : 0;
+    if (r.mirrorX != 0)
+    {
+        Pa.x = size - Pa.x;
+        Pb.x = size - Pb.x;
+    }
+    if (r.mirrorY != 0)
+    {
+        Pa.y = size - Pa.y;
+        Pb.y = size - Pb.y;
+    }
+    r.P = Pa;
+    r.dP = Pb - Pa;
+    r.iP = vec2(real(1.0) / max(r.dP.x, real(1e-12)), real(1.0) / max(r.dP.y, real(1e-12)));
+    r.q0 = qa;
+    r.dq = qb - qa;
+    r.idq = r.dq < real(0.0) ? real(1.0) / r.dq : real(0.0);
+    r.tq0 = r.ta * qa;
+    r.dtq = r.tb * qb - r.tq0;
+    r.ix = int(Pa.x);
+    r.iy = int(Pa.y);
+    r.ex = int(Pb.x);
+    r.ey = int(Pb.y);
+    r.s = real(0.0);
+    r.came = 0;
+    r.level = min(quality.startLevel, int(field.topLevel));
+    uint wordsPerFace = field.wordsPerProbe / 6u;
+    r.faceWords = r.probe * field.wordsPerProbe + uint(r.face) * wordsPerFace;
+    r.phase = kPhaseMarch;
+}
+
+/// q of a texel's plane minus q of the ray is linear in s: value at s = 0 and slope. Positive g: the ray is nearer than the surface.
+SCONCE_FN vec2 planeLine(RayState r, uint word, real cx, real cy)
+{
+    real qc = halfToReal(word);
+    real gx = qc * unpackGradient(word >> 16);
+    real gy = qc * unpackGradient(word >> 24);
+    if (r.mirrorX != 0) gx = -gx;
+    if (r.mirrorY != 0) gy = -gy;
+    return vec2(r.q0 - (qc + gx * (r.P.x - cx) + gy * (r.P.y - cy)), r.dq - (gx * r.dP.x + gy * r.dP.y));
+}
+
+SCONCE_FN uint texelIndex(RayState r, int x, int y, int level)
+{
+    int width = int(field.faceSize >> level);
+    int cx = (x >> level);
+    int cy = (y >> level);
+    cx = r.mirrorX != 0 ? width - 1 - cx : cx;
+    cy = r.mirrorY != 0 ? width - 1 - cy : cy;
+    return r.faceWords + levelOffset(level) + uint(cy * width + cx);
+}
+
+SCONCE_FN void endSegment(SCONCE_INOUT(RayState) r)
+{
+    r.t = max(r.t, r.tb);
+    r.ta = max(r.tb, r.ta);
+    r.phase = kPhaseSegment;
+}
+
+SCONCE_FN void march(SCONCE_INOUT(RayState) r)
+{
+    for (int step = 0; step < kMarchSteps; ++step)
+    {
+        int bx = (r.ix | ((1 << r.level) - 1)) + 1;
+        int by = (r.iy | ((1 << r.level) - 1)) + 1;
+        uint word = distanceWord(texelIndex(r, r.ix, r.iy, r.level));
+        ++r.distanceReads;
+        real sx = (real(bx) - r.P.x) * r.iP.x;
+        real sy = (real(by) - r.P.y) * r.iP.y;
+        real se = max(min(min(sx, sy), real(1.0)), r.s);
+        if (r.level > 0)
+        {
+            real bound = halfToReal(word);
+            real qs = r.q0 + r.s * r.dq;
+            real qe = r.q0 + se * r.dq;
+            if (min(qs, qe) <= bound)
+            {
+                real s = min(max((bound - r.q0) * r.idq * real(0.99999), r.s), se);
+                if (s > r.s) r.came = 0;
+                r.s = s;
+                r.ix = max(r.ix, min(int(r.P.x + s * r.dP.x), min(r.ex, bx - 1)));
+                r.iy = max(r.iy, min(int(r.P.y + s * r.dP.y), min(r.ey, by - 1)));
+                r.level -= 2;
+                continue;
+            }
+        }
+        else if ((word & 0xffffu) != 0u)
+        {
+            vec2 line = planeLine(r, word, real(r.ix) + real(0.5), real(r.iy) + real(0.5));
+            if (min(line.x + r.s * line.y, line.x + se * line.y) < real(0.0))
+            {
+                r.word = word;
+                r.sEnd = se;
+                r.phase = kPhaseFine;
+                return;
+            }
+        }
+        r.fresh = false;
+        if (se >= real(0.99999) || (sx <= sy ? bx > r.ex : by > r.ey))
+        {
+            endSegment(r);
+            return;
+        }
+        r.s = se;
+        int crossed;
+        if (sx <= sy)
+        {
+            r.ix = bx;
+            r.iy = max(r.iy, min(int(r.P.y + se * r.dP.y), min(r.ey, by - 1)));
+            r.came = 1;
+            crossed = bx;
+        }
+        else
+        {
+            r.iy = by;
+            r.ix = max(r.ix, min(int(r.P.x + se * r.dP.x), min(r.ex, bx - 1)));
+            r.came = 2;
+            crossed = by;
+        }
+        int up = r.level + 2;
+        if (up <= int(field.topLevel) && up <= quality.coarsestLevel && (crossed & ((1 << up) - 1)) == 0) r.level = up;
+    }
+}
+
+SCONCE_FN real timeAt(RayState r, real s) { return (r.tq0 + s * r.dtq) / (r.q0 + s * r.dq); }
+
+SCONCE_FN void rememberSurfel(SCONCE_INOUT(RayState) r, real s)
+{
+    real size = real(field.faceSize);
+    vec2 p = vec2(clamp(r.P.x + s * r.dP.x, real(r.ix), real(r.ix) + real(1.0)), clamp(r.P.y + s * r.dP.y, real(r.iy), real(r.iy) + real(1.0)));
+    r.pixel = vec2(r.mirrorX != 0 ? size - p.x : p.x, r.mirrorY != 0 ? size - p.y : p.y);
+    r.hitWord = r.word;
+    r.lastProbe = r.probe;
+    r.lastFace = r.face;
+}
+
+SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
+{
+    rememberSurfel(r, s);
+    r.t = max(r.t, timeAt(r, s));
+    r.status = kHit;
+    r.phase = kPhaseDone;
+}
+
+SCONCE_FN void handOff(SCONCE_INOUT(RayState) r)
+{
+    rememberSurfel(r, r.s);
+    r.t = max(r.t, min(timeAt(r, r.s), r.tb));
+    r.phase = kPhaseChoose;
+}
+
+/// Whether the previous texel along the ray and this one show one surface: the plane of either predicts the other's distance.
+SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, real tolerance)
+{
+    int px = r.came == 1 ? r.ix - 1 : r.ix;
+    int py = r.came == 2 ? r.iy - 1 : r.iy;
+    if (r.came == 0 || px < 0 || py < 0) return false;
+    uint before = distanceWord(texelIndex(r, px, py, 0));
+    ++r.distanceReads;
+    if ((before & 0xffffu) == 0u) return false;
+    real qb = halfToReal(before);
+    real qc = halfToReal(r.word);
+    real gb = unpackGradient(before >> (r.came == 1 ? 16 : 24));
+    real gc = unpackGradient(r.word >> (r.came == 1 ? 16 : 24));
+    if (r.came == 1 ? r.mirrorX != 0 : r.mirrorY != 0)
+    {
+        gb = -gb;
+        gc = -gc;
+    }
+    return abs(qb * (real(1.0) + gb) - qc) <= tolerance * qc || abs(qc * (real(1.0) - gc) - qb) <= tolerance * qb;
+}
+
+/// The ray is behind the plane of a texel somewhere in it: hit, free, or more than this probe can tell.
+SCONCE_FN void fineEvent(SCONCE_INOUT(RayState) r)
+{
+    vec2 line = planeLine(r, r.word, real(r.ix) + real(0.5), real(r.iy) + real(0.5));
+    real ga = line.x + r.s * line.y;
+    real gb = line.x + r.sEnd * line.y;
+    real qs = r.q0 + r.s * r.dq;
+    real qe = r.q0 + r.sEnd * r.dq;
+    real qc = halfToReal(r.word);
+    real footprint = real(2.0) / real(field.faceSize); // of a texel, relative to its distance
+    real epsilon = quality.epsilon * real(field.diagonal) * qs;
+    real gx = unpackGradient(r.word >> 16);
+    real gy = unpackGradient(r.word >> 24);
+    real slope = sqrt(gx * gx + gy * gy);
+    real thickness = quality.tolerance * (min(slope, footprint / real(0.12)) + real(0.5) * footprint) + epsilon;
+
+    bool first = r.fresh;
+    r.fresh = false;
+    if (ga >= real(0.0)) // crosses the plane inside the texel
+    {
+        real sx = min(max(-line.x / line.y, r.s), r.sEnd);
+        real qx = r.q0 + sx * r.dq;
+        // leaving through the back of the plane can't be: ga >= 0 > gb is a front side by construction
+        if (qc <= qx * (real(1.0) + thickness)) endAsHit(r, sx);
+        else handOff(r);
+        return;
+    }
+    bool facing = gb * qs < ga * qe; // g/q is proportional to the height over the plane: it falls when the ray runs into the surface
+    bool fromOrigin = first && r.handoffs == 1;
+    if (facing)
+    {
+        real qNear = max(qs, qe);
+        bool hit = false;
+        if (!fromOrigin)
+        {
+            if (first || r.came == 0) hit = qc <= qNear * (real(1.0) + real(0.25) * footprint + epsilon);
+            else hit = qc <= qNear * (real(1.0) + thickness) && continuesPrevious(r, footprint + epsilon);
+        }
+        if (hit) endAsHit(r, r.s);
+        else handOff(r);
+        return;
+    }
+    // Behind the plane and coming out of it: the ray's own start surface, seen a little too near, or the back of something.
+    real cosine = max(footprint / max(slope, footprint), real(0.12));
+    bool ownSurface = timeAt(r, r.s) * qc <= footprint / cosine + epsilon && -ga <= thickness * qs;
+    if (!ownSurface)
+    {
+        handOff(r);
+        return;
+    }
+    if (gb >= real(0.0) || r.sEnd < real(0.99999))
+    {
+        r.s = r.sEnd; // free: go on behind this texel
+        bool stepX = (real((r.ix) + 1) - r.P.x) * r.iP.x <= (real((r.iy) + 1) - r.P.y) * r.iP.y;
+        if (r.sEnd >= real(0.99999) || (stepX ? r.ix + 1 > r.ex : r.iy + 1 > r.ey))
+        {
+            endSegment(r);
+            return;
+        }
+        if (stepX)
+        {
+            r.ix += 1;
+            r.came = 1;
+        }
+        else
+        {
+            r.iy += 1;
+            r.came = 2;
+        }
+        r.phase = kPhaseMarch;
+        return;
+    }
+    endSegment(r);
+}
+
+SCONCE_FN RayState beginRay(vec3 origin, vec3 direction)
+{
+    RayState r;
+    r.origin = origin;
+    r.direction = direction;
+    r.tMax = fieldExit(origin, direction);
+    r.t = real(0.0);
+    r.status = kUnknown;
+    r.phase = kPhaseChoose;
+    r.probe = kNoProbe;
+    r.tClear = real(0.0);
+    r.triedCount = 0;
+    r.handoffs = 0;
+    r.distanceReads = 0;
+    r.indexReads = 0;
+    r.pixel = vec2(real(0.0), real(0.0));
+    r.hitWord = 0u;
+    r.lastProbe = kNoProbe;
+    r.lastFace = -1;
+    r.segments = 0;
+    r.face = 0;
+    r.fresh = true;
+    for (int i = 0; i < kMaxTried; ++i) r.tried[i] = kNoProbe;
+    return r;
+}
+
+SCONCE_FN void turn(SCONCE_INOUT(RayState) r)
+{
+    if (r.phase == kPhaseChoose) chooseProbe(r);
+    if (r.phase == kPhaseSegment) setUpSegment(r);
+    if (r.phase == kPhaseMarch) march(r);
+    if (r.phase == kPhaseFine) fineEvent(r);
+}
+
+/// Turns after which a ray ends as UNKNOWN whatever it does: every march step advances a texel index or descends a level (at most 8 N
+/// steps a segment, 8 a turn); a fine event that goes on advances one. Derived, never reached by a ray that makes progress.
+SCONCE_FN int turnLimit() { return (quality.maxHandoffs + 1) * (64 + 6 * int(field.faceSize)); }
+
+/// One ray, field space, unit direction. A ray that is not finite, or has no direction, is a MISS at t = 0 with no probe.
+SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction)
+{
+    RayState r = beginRay(origin, direction);
+    real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
+    if (!(sum < real(1e18)) || !(abs(dot(direction, direction) - real(1.0)) < real(1e-3)))
+    {
+        r.status = kMiss;
+        r.phase = kPhaseDone;
+    }
+    int limit = turnLimit();
+    for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
+    TraceResult result;
+    result.status = r.phase == kPhaseDone ? r.status : kUnknown;
+    result.t = r.t;
+    bool seen = result.status != kMiss && r.lastProbe != kNoProbe;
+    result.probe = result.status == kHit ? r.lastProbe : (seen ? r.lastProbe : (result.status == kMiss ? r.probe : kNoProbe));
+    result.face = seen ? r.lastFace : -1;
+    result.pixel = r.pixel;
+    result.word = seen ? r.hitWord : 0u;
+    result.handoffs = max(r.handoffs - 1, 0);
+    result.distanceReads = r.distanceReads;
+    result.indexReads = r.indexReads;
+    return result;
+}
+
+/// Unit normal of a texel's plane, field space, facing the probe.
+SCONCE_FN vec3 texelNormal(int face, vec2 pixel, uint word)
+{
+    real half_ = real(0.5) * real(field.faceSize);
+    real u = (floor(pixel.x) + real(0.5)) / half_ - real(1.0);
+    real v = (floor(pixel.y) + real(0.5)) / half_ - real(1.0);
+    real qu = unpackGradient(word >> 16) * half_;
+    real qv = unpackGradient(word >> 24) * half_;
+    return -faceDirection(face, normalize(vec3(qu, qv, real(1.0) - u * qu - v * qv)));
+}
