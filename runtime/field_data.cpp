@@ -1,0 +1,45 @@
+#include "runtime/field_data.h"
+
+#include <cassert>
+
+namespace sconce
+{
+
+FieldBytes bytesByPart(const FieldData& field)
+{
+    FieldBytes bytes;
+    const size_t distanceBytes = field.distance.size() * sizeof(uint32_t);
+    if (field.info.chart == gpu::kChartOctahedral)
+    {
+        // The upper 16 bits of every full-resolution word are the normal; the low-resolution words are all distance.
+        bytes.normals = size_t(field.info.probeCount) * field.info.faceSize * field.info.faceSize * sizeof(uint16_t);
+    }
+    bytes.distance = distanceBytes - bytes.normals;
+    bytes.radiance = field.radiance.size() * sizeof(uint32_t);
+    bytes.irradiance = field.irradiance.size() * sizeof(uint32_t);
+    bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
+    return bytes;
+}
+
+uint32_t coarsestLevel(uint32_t faceSize)
+{
+    assert(faceSize > 0);
+    uint32_t level = 0;
+    while (level < 6 && faceSize % (4u << level) == 0) level += 2;
+    return level;
+}
+
+uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size)
+{
+    if (chart == gpu::kChartOctahedral) return size * size + (size / gpu::kLowFactor) * (size / gpu::kLowFactor);
+    uint32_t words = 0;
+    for (uint32_t level = 0; level <= coarsestLevel(size); level += 2) words += (size >> level) * (size >> level);
+    return 6 * words;
+}
+
+uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size)
+{
+    return (chart == gpu::kChartOctahedral ? 1u : 6u) * size * size;
+}
+
+} // namespace sconce
