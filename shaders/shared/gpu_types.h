@@ -10,6 +10,8 @@
 #define SCONCE_FN inline
 #define SCONCE_OUT(type) type&
 #define SCONCE_INOUT(type) type&
+#define SCONCE_IN(type) const type&
+#define SCONCE_CONST static constexpr
 #define SCONCE_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
 namespace sconce::gpu
 {
@@ -34,6 +36,8 @@ using glm::vec4;
 #define SCONCE_FN
 #define SCONCE_OUT(type) out type
 #define SCONCE_INOUT(type) inout type
+#define SCONCE_IN(type) in type
+#define SCONCE_CONST const
 #define SCONCE_CHECK_SIZE(type, bytes)
 #define SCONCE_STRUCTS_BEGIN
 #define SCONCE_STRUCTS_END

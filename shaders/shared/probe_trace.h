@@ -8,19 +8,19 @@
 // BEFORE the cell that blocked it, so that the next probe misses nothing (Donow 2016, section on back faces).
 // All lengths are field units (light_field.h).
 
-const uint kMiss = 0u;
-const uint kHit = 1u;
-const uint kUnknown = 2u;
+SCONCE_CONST uint kMiss = 0u;
+SCONCE_CONST uint kHit = 1u;
+SCONCE_CONST uint kUnknown = 2u;
 
-const int kPhaseChoose = 0;
-const int kPhaseSegment = 1;
-const int kPhaseMarch = 2;
-const int kPhaseFine = 3;
-const int kPhaseDone = 4;
+SCONCE_CONST int kPhaseChoose = 0;
+SCONCE_CONST int kPhaseSegment = 1;
+SCONCE_CONST int kPhaseMarch = 2;
+SCONCE_CONST int kPhaseFine = 3;
+SCONCE_CONST int kPhaseDone = 4;
 
-const int kMarchSteps = 8;    // march steps a turn of the state machine, before other lanes' events get their turn
-const int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
-const int kMaxTried = 12;     // probes remembered as tried without progress: three lists of four
+SCONCE_CONST int kMarchSteps = 8;    // march steps a turn of the state machine, before other lanes' events get their turn
+SCONCE_CONST int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
+SCONCE_CONST int kMaxTried = 12;     // probes remembered as tried without progress: three lists of four
 
 struct RayState
 {
@@ -90,9 +90,8 @@ struct TraceResult
 
 SCONCE_FN uint levelOffset(int level)
 {
-    uint offset = 0u;
-    for (int l = 0; l < level; l += 2) offset += (field.faceSize >> l) * (field.faceSize >> l);
-    return offset;
+    uint width = field.faceSize >> level;
+    return (field.faceSize * field.faceSize - width * width) / 15u * 16u; // sum of a geometric series: each level has 1/16 of the words
 }
 
 /// The time at which the ray leaves the field's box, enlarged by 2 % so that a wall on its border is met; 0 when it never is inside.
@@ -117,7 +116,7 @@ SCONCE_FN real fieldExit(vec3 o, vec3 d)
     return leave > enter ? leave : real(0.0);
 }
 
-SCONCE_FN bool wasTried(RayState r, uint probe)
+SCONCE_FN bool wasTried(SCONCE_IN(RayState) r, uint probe)
 {
     for (int i = 0; i < r.triedCount; ++i)
         if (r.tried[i] == probe) return true;
@@ -285,7 +284,7 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
 }
 
 /// q of a texel's plane minus q of the ray is linear in s: value at s = 0 and slope. Positive g: the ray is nearer than the surface.
-SCONCE_FN vec2 planeLine(RayState r, uint word, real cx, real cy)
+SCONCE_FN vec2 planeLine(SCONCE_IN(RayState) r, uint word, real cx, real cy)
 {
     real qc = halfToReal(word);
     real gx = qc * unpackGradient(word >> 16);
@@ -295,7 +294,7 @@ SCONCE_FN vec2 planeLine(RayState r, uint word, real cx, real cy)
     return vec2(r.q0 - (qc + gx * (r.P.x - cx) + gy * (r.P.y - cy)), r.dq - (gx * r.dP.x + gy * r.dP.y));
 }
 
-SCONCE_FN uint texelIndex(RayState r, int x, int y, int level)
+SCONCE_FN uint texelIndex(SCONCE_IN(RayState) r, int x, int y, int level)
 {
     int width = int(field.faceSize >> level);
     int cx = (x >> level);
@@ -377,7 +376,7 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
     }
 }
 
-SCONCE_FN real timeAt(RayState r, real s) { return (r.tq0 + s * r.dtq) / (r.q0 + s * r.dq); }
+SCONCE_FN real timeAt(SCONCE_IN(RayState) r, real s) { return (r.tq0 + s * r.dtq) / (r.q0 + s * r.dq); }
 
 SCONCE_FN void rememberSurfel(SCONCE_INOUT(RayState) r, real s)
 {

@@ -5,11 +5,7 @@
 // Level 2, 4, ...: bits 0..15 half float maximum of q over the texel (nearest surface, rounded up), bits 16..31 minimum (rounded down).
 // Octahedral level 0: bits 0..15 half float r (0x7c00: sky), bits 16..31 octahedral normal, 8 + 8 bits. Low level: (min r, max r).
 
-#ifdef __cplusplus
-static constexpr real kGradientScale = real(0.15);
-#else
-const real kGradientScale = real(0.15);
-#endif
+SCONCE_CONST real kGradientScale = real(0.15);
 
 SCONCE_FN real halfToReal(uint bits) { return real(unpackHalf2x16(bits & 0xffffu).x); }
 

@@ -1,0 +1,140 @@
+// What light the probe maps hold: radiance at a traced hit and prefiltered irradiance at a point. Shared text, see probe_trace.h; needs
+// radianceWord(uint) and irradianceWord(uint) besides.
+
+SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
+{
+    return ((probe * 6u + uint(face)) * field.faceSize + uint(y)) * field.faceSize + uint(x);
+}
+
+/// Radiance leaving the surfel of a trace's result towards its probe, W/(m^2 sr). Bilinear over the texels that lie on the surfel's own
+/// plane, so that neither a silhouette nor a texel of the background bleeds in. Cost: 8 reads.
+SCONCE_FN vec3 surfelRadiance(SCONCE_IN(TraceResult) hit)
+{
+    int size = int(field.faceSize);
+    real x = clamp(hit.pixel.x, real(0.5), real(size) - real(0.5)) - real(0.5);
+    real y = clamp(hit.pixel.y, real(0.5), real(size) - real(0.5)) - real(0.5);
+    int x0 = min(int(x), size - 2);
+    int y0 = min(int(y), size - 2);
+    real fx = x - real(x0);
+    real fy = y - real(y0);
+    real cx = min(floor(hit.pixel.x), real(size - 1));
+    real cy = min(floor(hit.pixel.y), real(size - 1));
+    real qc = halfToReal(hit.word);
+    real gx = unpackGradient(hit.word >> 16);
+    real gy = unpackGradient(hit.word >> 24);
+    uint faceWords = hit.probe * field.wordsPerProbe + uint(hit.face) * (field.wordsPerProbe / 6u);
+    vec3 sum = vec3(real(0.0));
+    real weights = real(0.0);
+    for (int tap = 0; tap < 4; ++tap)
+    {
+        int tx = x0 + (tap & 1);
+        int ty = y0 + (tap >> 1);
+        real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy) + real(1e-4);
+        real q = halfToReal(distanceWord(faceWords + uint(ty * size + tx)));
+        real expected = qc * (real(1.0) + gx * (real(tx) - cx) + gy * (real(ty) - cy));
+        if (abs(q - expected) > real(0.02) * qc && (real(tx) != cx || real(ty) != cy)) continue;
+        sum += weight * unpackRadiance(radianceWord(radianceIndex(hit.probe, hit.face, tx, ty)));
+        weights += weight;
+    }
+    return sum / max(weights, real(1e-6));
+}
+
+/// Word index of a probe's irradiance map texel; coordinates one outside wrap as the octahedral map does (mirrored along the border).
+SCONCE_FN uint irradianceIndex(uint probe, int x, int y)
+{
+    int n = int(kIrradianceSize);
+    if (x < 0)
+    {
+        x = -1 - x;
+        y = n - 1 - y;
+    }
+    if (x >= n)
+    {
+        x = 2 * n - 1 - x;
+        y = n - 1 - y;
+    }
+    if (y < 0)
+    {
+        y = -1 - y;
+        x = n - 1 - x;
+    }
+    if (y >= n)
+    {
+        y = 2 * n - 1 - y;
+        x = n - 1 - x;
+    }
+    return 2u * ((probe * kIrradianceSize + uint(y)) * kIrradianceSize + uint(x));
+}
+
+/// Bilinear: cosine-weighted mean radiance (irradiance / pi) about direction d.
+SCONCE_FN vec3 probeIrradiance(uint probe, vec3 d)
+{
+    vec2 uv = octahedralFromDirection(d);
+    real x = uv.x * real(kIrradianceSize) - real(0.5);
+    real y = uv.y * real(kIrradianceSize) - real(0.5);
+    int x0 = int(floor(x));
+    int y0 = int(floor(y));
+    real fx = x - floor(x);
+    real fy = y - floor(y);
+    return (real(1.0) - fy) * ((real(1.0) - fx) * unpackRadiance(irradianceWord(irradianceIndex(probe, x0, y0))) +
+                               fx * unpackRadiance(irradianceWord(irradianceIndex(probe, x0 + 1, y0)))) +
+           fy * ((real(1.0) - fx) * unpackRadiance(irradianceWord(irradianceIndex(probe, x0, y0 + 1))) +
+                 fx * unpackRadiance(irradianceWord(irradianceIndex(probe, x0 + 1, y0 + 1))));
+}
+
+/// Bilinear: (mean, variance) of the distance seen in direction d, field units.
+SCONCE_FN vec2 probeMoments(uint probe, vec3 d)
+{
+    vec2 uv = octahedralFromDirection(d);
+    real x = uv.x * real(kIrradianceSize) - real(0.5);
+    real y = uv.y * real(kIrradianceSize) - real(0.5);
+    int x0 = int(floor(x));
+    int y0 = int(floor(y));
+    real fx = x - floor(x);
+    real fy = y - floor(y);
+    vec2 sum = vec2(real(0.0), real(0.0));
+    for (int tap = 0; tap < 4; ++tap)
+    {
+        uint word = irradianceWord(irradianceIndex(probe, x0 + (tap & 1), y0 + (tap >> 1)) + 1u);
+        real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
+        sum += weight * vec2(halfToReal(word), halfToReal(word >> 16));
+    }
+    return sum;
+}
+
+/// Cosine-weighted mean of the radiance arriving at a surface point (irradiance / pi; multiply by the diffuse albedo), from the probes of
+/// its leaf. Weights: wrapped cosine towards the probe (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced
+/// Irradiance Fields"), Chebyshev visibility from the distance moments (McGuire et al. 2017, section 5.2; cubed as in the former), and
+/// the inverse square of the distance, since the probes are no grid.
+/// @param lookUp  point whose leaf is asked; the caller may dither it about the point to hide borders of voxels
+SCONCE_FN vec3 irradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    uvec4 ranked = rankedProbesAt(lookUp, reads);
+    vec3 sum = vec3(real(0.0));
+    real weights = real(0.0);
+    vec3 biased = point + real(0.002) * real(field.diagonal) * normal;
+    for (int k = 0; k < kRanked; ++k)
+    {
+        bool repeated = false;
+        for (int j = 0; j < k; ++j) repeated = repeated || ranked[j] == ranked[k];
+        if (repeated) continue;
+        vec3 toProbe = vec3(probeHeader(ranked[k]).centre) - biased;
+        real distance2 = max(dot(toProbe, toProbe), real(1e-12));
+        real distance = sqrt(distance2);
+        vec3 direction = toProbe / distance;
+        real wrap = real(0.5) * dot(direction, normal) + real(0.5);
+        real weight = wrap * wrap + real(0.02);
+        vec2 moments = probeMoments(ranked[k], -direction);
+        if (distance > moments.x)
+        {
+            real beyond = distance - moments.x;
+            real spread = moments.y + real(1e-6);
+            real chebyshev = spread / (spread + beyond * beyond);
+            weight *= chebyshev * chebyshev * chebyshev;
+        }
+        weight = max(weight, real(1e-6)) / (distance2 + real(field.voxel) * real(field.voxel));
+        sum += weight * probeIrradiance(ranked[k], normal);
+        weights += weight;
+    }
+    return sum / max(weights, real(1e-12));
+}
