@@ -29,6 +29,7 @@ struct LightFieldTwin
     static constexpr uint kNoProbe = gpu::kNoProbe;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
+    static constexpr uint kLowFactor = gpu::kLowFactor;
 
     explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data) {}
 
@@ -59,6 +60,8 @@ struct LightFieldTwin
 #include "shaders/shared/probe_trace.h"
 
 #include "shaders/shared/light_lookup.h"
+
+#include "shaders/shared/baseline_b0.h"
 };
 
 } // namespace sconce::twin

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "shaders/shared/light_field.h"
+
+namespace sconce
+{
+
+/// Every approximate knob of a frame, with its default, range and unit; their measured prices are in README.md.
+struct Quality
+{
+    gpu::TraceQuality trace = {
+        .ranked = 4,         // probes of a leaf that are asked, 1..4
+        .maxHandoffs = 24,   // probes a ray may change to before it ends as UNKNOWN, 0..64
+        .startLevel = 4,     // level of the Hi-Z chain a segment starts at; even, 0..6. Results don't depend on it, reads do
+        .coarsestLevel = 6,  // coarsest level climbed to; even, 0..6. Results don't depend on it, reads do
+        .tolerance = 1.0f,   // scale of the hit rule's thickness, 0.25..4; 1 is derived from the texel's footprint
+        .epsilon = 1e-4f,    // absolute slack of the hit rule, share of the scene's diagonal, 0..1e-2
+    };
+    int glossyRays = 1;      // rays a pixel and frame for the glossy term, 1..64; time grows in proportion, noise falls with the root
+    bool denoise = true;     // cross-bilateral filter of the glossy term
+};
+
+} // namespace sconce

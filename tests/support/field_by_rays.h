@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "bench/ray_scene.h"
+#include "runtime/field_data.h"
+#include "svo/build_octree.h"
+
+namespace sconce::testing_support
+{
+
+/// A light field whose cube-face distance maps are cast with Embree instead of rasterised: the same words from other means, so that the
+/// tracer is tested apart from the bake and the bake against something that is not itself. Radiance and irradiance stay empty.
+/// @param positions world, metres
+FieldData fieldByRays(const RayScene& scene, std::span<const glm::vec3> positions, uint32_t faceSize, const OctreeSettings& octree = {});
+
+/// Tracing settings of the medium quality.
+gpu::TraceQuality defaultQuality();
+
+} // namespace sconce::testing_support
