@@ -86,7 +86,7 @@ void addStairs(MeshBuilder& mesh, const TownMaterials& m)
     {
         const float x = 0.55f + 0.235f * float(i), y = kGround + rise * float(i + 1);
         mesh.box({x, y - 0.05f, kWall + 0.01f}, {x + 0.26f, y, 1.25f}, m.oak);
-        mesh.cylinder({x + 0.13f, y, 1.22f}, 0.012f, 0.9f, 8, m.darkMetal);
+        mesh.cylinder({x + 0.13f, y, 1.22f}, 0.012f, 0.9f, 6, m.darkMetal);
     }
     mesh.box({0.5f, kUpper, 1.32f}, {4.2f, kUpper + 0.9f, 1.36f}, m.birch); // parapet of the stair well
 }
@@ -104,7 +104,7 @@ void addRoof(MeshBuilder& mesh, const TownMaterials& m, uint32_t facade, bool fl
     }
     const vec3 low(-0.4f, kTop, -0.5f), high(kWidth + 0.4f, kTop + 2.6f, kDepth + 0.5f);
     mesh.gable(low, high, m.roofTile, facade);
-    constexpr int kRows = 9, kTiles = 24; // overlapping rows of tiles on both slopes
+    constexpr int kRows = 7, kTiles = 10; // overlapping rows of tiles on both slopes
     const float halfDepth = 0.5f * (high.z - low.z), slope = std::atan2(high.y - low.y, halfDepth),
                 length = std::hypot(high.y - low.y, halfDepth);
     const mat4 house = mesh.place;
@@ -163,7 +163,7 @@ void addHouse(MeshBuilder& mesh, const TownMaterials& m, mat4 frame, uint64_t se
     put.at({7.0f, kUpper, 6.2f}, vary.between(-30, 30), [&] { addChair(mesh, m, wood); });
     put.at({7.2f, kUpper + 0.74f, 7.0f}, 180, [&] { mesh.box({-0.3f, 0.08f, -0.02f}, {0.3f, 0.45f, 0.02f}, m.screen); });
     put.at({8.62f, kUpper, 3.0f}, -90, [&] { addBookshelf(mesh, m, m.walnut, vary); });
-    put.at({8.62f, kUpper, 4.3f}, -90, [&] { addBookshelf(mesh, m, m.walnut, vary); });
+    put.at({8.5f, kUpper, 4.4f}, -90, [&] { addChair(mesh, m, wood); });
     put.at({5.5f, kUpper, 7.3f}, 0, [&] { addPottedPlant(mesh, m, vary); });
     put.at({7.0f, 0, 3.6f}, 0, [&] { addCeilingLamp(mesh, m, kUpperCeiling, lamp(vary.below(2) == 0)); });
     mesh.place = mat4(1.0f);
@@ -176,12 +176,12 @@ mat4 houseFrame(vec3 corner, float degrees)
 
 void addGround(MeshBuilder& mesh, const TownMaterials& m)
 {
-    mesh.quad({-52, -0.02f, 22}, {52, -0.02f, 22}, {52, -0.02f, -46}, {-52, -0.02f, -46}, m.leaves[2], 26, 17);
-    mesh.box({-50, -0.3f, -4}, {50, 0.0f, 4}, m.asphalt);
-    for (int i = 0; i < 16; ++i) mesh.box({-48.0f + 6.2f * float(i), 0.0f, -0.08f}, {-45.5f + 6.2f * float(i), 0.006f, 0.08f}, m.white);
-    mesh.box({-50, -0.3f, 4}, {50, 0.12f, 6.2f}, m.paving);
-    mesh.box({-50, -0.3f, -6.2f}, {50, 0.12f, -4}, m.paving);
-    for (const float z : {-4.0f, 3.85f}) mesh.box({-50, 0.0f, z}, {50, 0.13f, z + 0.15f}, m.kerb);
+    mesh.quad({-42, -0.02f, 22}, {42, -0.02f, 22}, {42, -0.02f, -46}, {-42, -0.02f, -46}, m.leaves[2], 21, 17);
+    mesh.box({-40, -0.3f, -4}, {40, 0.0f, 4}, m.asphalt);
+    for (int i = 0; i < 12; ++i) mesh.box({-36.4f + 6.2f * float(i), 0.0f, -0.08f}, {-33.9f + 6.2f * float(i), 0.006f, 0.08f}, m.white);
+    mesh.box({-40, -0.3f, 4}, {40, 0.12f, 6.2f}, m.paving);
+    mesh.box({-40, -0.3f, -6.2f}, {40, 0.12f, -4}, m.paving);
+    for (const float z : {-4.0f, 3.85f}) mesh.box({-40, 0.0f, z}, {40, 0.13f, z + 0.15f}, m.kerb);
     for (int z = 0; z < 24; ++z) // the square's slabs, laid with joints
         for (int x = 0; x < 22; ++x)
             mesh.box({-11.0f + float(x), 0.0f, -30.2f + float(z)},
@@ -201,8 +201,8 @@ Scene makeTown()
     addGround(mesh, m);
 
     uint64_t seed = 1;
-    for (const float x : {-46.0f, -34.5f, -23.0f, 14.0f, 25.5f, 37.0f}) addHouse(mesh, m, houseFrame({x, 0, -14.2f}, 0), seed++);
-    for (int i = 0; i < 8; ++i) addHouse(mesh, m, houseFrame({-37.0f + 11.5f * float(i), 0, 14.2f}, 180), seed++);
+    for (const float x : {-34.5f, -23.0f, 14.0f, 25.5f}) addHouse(mesh, m, houseFrame({x, 0, -14.2f}, 0), seed++);
+    for (int i = 0; i < 6; ++i) addHouse(mesh, m, houseFrame({-25.5f + 11.5f * float(i), 0, 14.2f}, 180), seed++);
     for (const float x : {-10.0f, 1.5f}) addHouse(mesh, m, houseFrame({x, 0, -38.6f}, 0), seed++);
 
     Variation vary(77);
@@ -212,9 +212,9 @@ Scene makeTown()
         add();
         mesh.place = mat4(1.0f);
     };
-    for (int i = 0; i < 9; ++i)
+    for (int i = 0; i < 7; ++i)
     {
-        const float x = -44.0f + 11.0f * float(i);
+        const float x = -33.0f + 11.0f * float(i);
         put({x, 0.12f, 4.6f}, 0, [&] { addStreetLamp(mesh, m); });
         if (std::abs(x) > 12.0f) put({x + 5.0f, 0.12f, -4.9f}, 0, [&] { addStreetLamp(mesh, m); });
     }
@@ -235,7 +235,7 @@ Scene makeTown()
     scene.sky = vec3(0.60f, 0.78f, 1.05f);
 
     mesh.camera("main", {-15.5f, 2.4f, 1.6f}, {3.0f, 2.2f, -17.0f}, 60.0f);
-    mesh.camera("street", {-46.0f, 1.7f, 1.2f}, {0.0f, 2.6f, -1.0f}, 55.0f);
+    mesh.camera("street", {-36.0f, 1.7f, 1.2f}, {0.0f, 2.6f, -1.0f}, 55.0f);
     mesh.camera("square", {7.0f, 1.8f, -7.6f}, {-3.0f, 1.9f, -24.0f}, 65.0f);
     mesh.place = houseFrame({14.0f, 0, -14.2f}, 0); // the house at the square's corner
     mesh.camera("living room", {4.0f, 1.7f, 7.2f}, {1.6f, 0.9f, 2.6f}, 70.0f);

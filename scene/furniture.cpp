@@ -53,7 +53,7 @@ void addTable(MeshBuilder& mesh, const TownMaterials& m, vec2 size, float height
     mesh.box({-half.x, height - 0.04f, -half.y}, {half.x, height, half.y}, wood);
     for (const float x : {-1.0f, 1.0f})
         for (const float z : {-1.0f, 1.0f})
-            mesh.cylinder({x * (half.x - 0.07f), 0.0f, z * (half.y - 0.07f)}, 0.022f, 0.034f, height - 0.04f, 12, m.walnut);
+            mesh.cylinder({x * (half.x - 0.07f), 0.0f, z * (half.y - 0.07f)}, 0.022f, 0.034f, height - 0.04f, 8, m.walnut);
 }
 
 void addChair(MeshBuilder& mesh, const TownMaterials& m, uint32_t wood)
@@ -61,9 +61,9 @@ void addChair(MeshBuilder& mesh, const TownMaterials& m, uint32_t wood)
     mesh.box({-0.22f, 0.43f, -0.22f}, {0.22f, 0.47f, 0.22f}, wood);
     for (const float x : {-0.18f, 0.18f})
     {
-        mesh.cylinder({x, 0.0f, 0.18f}, 0.016f, 0.02f, 0.43f, 10, m.walnut);
-        mesh.cylinder({x, 0.0f, -0.18f}, 0.016f, 0.02f, 0.43f, 10, m.walnut);
-        mesh.cylinder({x, 0.47f, -0.19f}, 0.018f, 0.43f, 10, wood);
+        mesh.cylinder({x, 0.0f, 0.18f}, 0.016f, 0.02f, 0.43f, 8, m.walnut);
+        mesh.cylinder({x, 0.0f, -0.18f}, 0.016f, 0.02f, 0.43f, 8, m.walnut);
+        mesh.cylinder({x, 0.47f, -0.19f}, 0.018f, 0.43f, 8, wood);
     }
     mesh.box({-0.21f, 0.80f, -0.21f}, {0.21f, 0.92f, -0.17f}, wood);
     for (int i = 0; i < 4; ++i) mesh.box({-0.13f + 0.075f * float(i), 0.47f, -0.2f}, {-0.10f + 0.075f * float(i), 0.80f, -0.18f}, wood);
@@ -82,7 +82,7 @@ void addBookshelf(MeshBuilder& mesh, const TownMaterials& m, uint32_t wood, Vari
         const float end = vary.between(0.1f, 0.5f); // the shelf is full up to here
         for (float x = -0.56f; x < end;)
         {
-            const float width = vary.between(0.022f, 0.05f), height = vary.between(0.2f, 0.31f), depth = vary.between(0.15f, 0.22f);
+            const float width = vary.between(0.03f, 0.07f), height = vary.between(0.2f, 0.31f), depth = vary.between(0.15f, 0.22f);
             mesh.box({x, y + 0.025f, -0.13f}, {x + width, y + 0.025f + height, -0.13f + depth}, m.books[vary.below(6)]);
             x += width + 0.003f;
         }
@@ -97,7 +97,7 @@ void addBed(MeshBuilder& mesh, const TownMaterials& m, uint32_t cloth)
         for (const float z : {-0.98f, 0.98f}) mesh.cylinder({x, 0.0f, z}, 0.035f, 0.16f, 12, m.walnut);
     mesh.box({-0.82f, 0.32f, -1.03f}, {0.82f, 0.50f, 1.03f}, m.linen);
     mesh.box({-0.86f, 0.38f, -0.35f}, {0.86f, 0.56f, 1.07f}, cloth);
-    for (const float x : {-0.4f, 0.4f}) mesh.sphere({x, 0.57f, -0.75f}, {0.33f, 0.1f, 0.2f}, 20, 12, m.linen);
+    for (const float x : {-0.4f, 0.4f}) mesh.sphere({x, 0.57f, -0.75f}, {0.33f, 0.1f, 0.2f}, 14, 8, m.linen);
 }
 
 void addSofa(MeshBuilder& mesh, const TownMaterials& m, uint32_t cloth)
@@ -139,8 +139,8 @@ void addTableware(MeshBuilder& mesh, const TownMaterials& m)
     for (const float x : {-0.42f, 0.42f})
         for (const float z : {-0.22f, 0.22f})
         {
-            mesh.cylinder({x, 0.0f, z}, 0.07f, 0.12f, 0.02f, 20, m.ceramic);
-            mesh.cylinder({x + 0.17f, 0.0f, z}, 0.03f, 0.038f, 0.10f, 14, m.ceramic);
+            mesh.cylinder({x, 0.0f, z}, 0.07f, 0.12f, 0.02f, 12, m.ceramic);
+            mesh.cylinder({x + 0.17f, 0.0f, z}, 0.03f, 0.038f, 0.10f, 10, m.ceramic);
         }
     mesh.cylinder({0.0f, 0.0f, 0.0f}, 0.06f, 0.09f, 0.16f, 24, m.brass);
     mesh.sphere({0.0f, 0.24f, 0.0f}, {0.12f, 0.11f, 0.12f}, 16, 10, m.leaves[1]);
@@ -154,8 +154,7 @@ void addPottedPlant(MeshBuilder& mesh, const TownMaterials& m, Variation& vary)
     for (int i = 0; i < 7; ++i)
     {
         const float angle = 0.9f * float(i) + vary.between(0.0f, 0.5f), out = vary.between(0.06f, 0.2f);
-        mesh.sphere({out * std::cos(angle), 0.65f + 0.09f * float(i), out * std::sin(angle)}, {0.13f, 0.06f, 0.13f}, 12, 8,
-                    m.leaves[i % 3]);
+        mesh.sphere({out * std::cos(angle), 0.65f + 0.09f * float(i), out * std::sin(angle)}, {0.13f, 0.06f, 0.13f}, 8, 6, m.leaves[i % 3]);
     }
 }
 
@@ -163,7 +162,7 @@ void addCeilingLamp(MeshBuilder& mesh, const TownMaterials& m, float ceiling, ui
 {
     mesh.cylinder({0, ceiling - 0.45f, 0}, 0.008f, 0.45f, 8, m.darkMetal);
     mesh.cylinder({0, ceiling - 0.55f, 0}, 0.20f, 0.05f, 0.10f, 24, m.brass);
-    mesh.sphere({0, ceiling - 0.62f, 0}, 0.08f, 18, 12, lamp);
+    mesh.sphere({0, ceiling - 0.62f, 0}, 0.08f, 12, 8, lamp);
 }
 
 void addFloorLamp(MeshBuilder& mesh, const TownMaterials& m, uint32_t lamp)
@@ -180,7 +179,7 @@ void addTree(MeshBuilder& mesh, const TownMaterials& m, Variation& vary)
     {
         const float angle = 2.4f * float(i), out = i == 0 ? 0.0f : vary.between(0.5f, 1.0f); // 2.4 rad: golden angle, spreads evenly
         const vec3 centre(out * std::cos(angle), 2.7f + 0.2f * float(i), out * std::sin(angle));
-        mesh.sphere(centre, vec3(0.75f, 0.55f, 0.75f) * vary.between(0.8f, 1.15f), 16, 10, m.leaves[vary.below(3)]);
+        mesh.sphere(centre, vec3(0.75f, 0.55f, 0.75f) * vary.between(0.8f, 1.15f), 14, 8, m.leaves[vary.below(3)]);
     }
 }
 
@@ -188,7 +187,7 @@ void addStreetLamp(MeshBuilder& mesh, const TownMaterials& m)
 {
     mesh.cylinder({0, 0, 0}, 0.14f, 0.10f, 0.4f, 16, m.darkMetal);
     mesh.cylinder({0, 0.4f, 0}, 0.05f, 3.3f, 14, m.darkMetal);
-    mesh.sphere({0, 3.9f, 0}, 0.2f, 20, 14, m.streetLamp);
+    mesh.sphere({0, 3.9f, 0}, 0.2f, 14, 10, m.streetLamp);
     mesh.cylinder({0, 4.08f, 0}, 0.24f, 0.03f, 0.12f, 20, m.darkMetal);
 }
 
@@ -229,7 +228,7 @@ void addMarketStall(MeshBuilder& mesh, const TownMaterials& m, uint32_t cloth)
         const float x = -0.7f + 0.7f * float(crate);
         mesh.box({x - 0.26f, 0.85f, -0.3f}, {x + 0.26f, 0.93f, 0.3f}, m.birch);
         for (int i = 0; i < 12; ++i)
-            mesh.sphere({x - 0.18f + 0.12f * float(i % 4), 0.97f, -0.2f + 0.19f * float(i / 4)}, 0.055f, 12, 8, m.cloth[(crate * 2) % 4]);
+            mesh.sphere({x - 0.18f + 0.12f * float(i % 4), 0.97f, -0.2f + 0.19f * float(i / 4)}, 0.055f, 8, 6, m.cloth[(crate * 2) % 4]);
     }
 }
 
