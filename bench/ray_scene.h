@@ -1,0 +1,48 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "scene/result.h"
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+struct SurfaceHit
+{
+    float t = 0.0f; // metres when the direction is unit
+    uint32_t triangle = 0;
+    vec2 barycentrics{0.0f}; // weights of the second and third vertex
+    vec3 position{0.0f};
+    vec3 geometricNormal{0.0f}; // by winding, unit
+    vec3 shadingNormal{0.0f};   // interpolated, unit, on the geometric normal's side
+    vec2 uv{0.0f};
+    uint32_t material = 0;
+};
+
+/// A Scene that answers rays on the CPU: the truth that tracers and pictures are measured against. Points whose alpha is below their
+/// material's cutoff are not there. Safe from many threads. The scene must outlive it.
+class RayScene
+{
+public:
+    static Result<RayScene> create(const Scene& scene);
+    RayScene(RayScene&&) noexcept;
+    RayScene& operator=(RayScene&&) noexcept;
+    ~RayScene();
+
+    std::optional<SurfaceHit> closest(vec3 origin, vec3 direction, float tFar = std::numeric_limits<float>::infinity()) const;
+    bool occluded(vec3 origin, vec3 direction, float tFar) const;
+
+    const Scene& scene() const;
+    /// Half the gap by which rays start off a surface, metres: beyond the rounding of any position in the scene.
+    float offset() const;
+
+private:
+    struct Impl;
+    explicit RayScene(std::unique_ptr<Impl> state);
+    std::unique_ptr<Impl> impl;
+};
+
+} // namespace sconce

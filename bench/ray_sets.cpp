@@ -1,0 +1,178 @@
+#include "bench/ray_sets.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include <tbb/parallel_for.h>
+
+#include "bench/random.h"
+#include "shaders/shared/brdf.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr int kTries = 1000; // per ray, before the viewpoints count as blind
+
+struct Ray
+{
+    vec3 origin;
+    vec3 direction;
+};
+
+vec3 uniformDirection(vec2 u)
+{
+    const float z = 1.0f - 2.0f * u.x;
+    const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+    return {r * std::cos(2.0f * SCONCE_BRDF_PI * u.y), r * std::sin(2.0f * SCONCE_BRDF_PI * u.y), z};
+}
+
+Ray viewRay(std::span<const Camera> cameras, std::span<const vec3> points, Random& random)
+{
+    const uint32_t pick = random.below(static_cast<uint32_t>(cameras.size() + points.size()));
+    const vec2 u = random.uniform2();
+    if (pick >= cameras.size()) return {points[pick - cameras.size()], uniformDirection(u)};
+    const Camera& camera = cameras[pick];
+    const float half = std::tan(0.5f * camera.verticalFov);
+    const vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
+    const vec3 up = glm::normalize(glm::cross(right, camera.forward));
+    return {camera.eye, glm::normalize(glm::normalize(camera.forward) + half * ((2.0f * u.x - 1.0f) * right + (2.0f * u.y - 1.0f) * up))};
+}
+
+RayTruth truthOf(const RayScene& rays, vec3 origin, vec3 direction)
+{
+    const auto hit = rays.closest(origin, direction);
+    if (!hit) return {};
+    const float side = glm::dot(hit->geometricNormal, direction) > 0.0f ? -1.0f : 1.0f;
+    return {true, hit->t, hit->position, side * hit->geometricNormal, hit->triangle};
+}
+
+RaySet emptySet(const RayScene& rays, size_t count)
+{
+    RaySet set;
+    set.origins.resize(count);
+    set.directions.resize(count);
+    set.startCosine.resize(count, 1.0f);
+    set.truth.resize(count);
+    const Bounds bounds = rays.scene().bounds();
+    set.diagonal = bounds.empty() ? 0.0f : bounds.diagonal();
+    return set;
+}
+
+Spread spreadOf(std::vector<uint32_t> values)
+{
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    double sum = 0.0;
+    for (uint32_t v : values) sum += v;
+    const auto rank = static_cast<size_t>(std::ceil(0.95 * static_cast<double>(values.size())));
+    return {sum / static_cast<double>(values.size()), values[rank - 1], values.back()};
+}
+
+} // namespace
+
+Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras, std::span<const vec3> points,
+                          const GlossyRaySettings& settings)
+{
+    if (cameras.empty() && points.empty())
+        return Error{ErrorCode::badArgument, "glossy rays need a viewpoint; give a camera or an interior point"};
+    if (!(settings.alphaLow >= 1e-3f && settings.alphaLow <= settings.alphaHigh && settings.alphaHigh <= 1.0f))
+        return Error{ErrorCode::badArgument, "glossy rays' alpha range is " + std::to_string(settings.alphaLow) + " to " +
+                                                 std::to_string(settings.alphaHigh) + "; choose 0.001 <= low <= high <= 1"};
+    RaySet set = emptySet(rays, settings.count);
+    std::atomic<bool> blind{false};
+    tbb::parallel_for(uint32_t(0), settings.count,
+                      [&](uint32_t i)
+                      {
+                          if (blind.load(std::memory_order_relaxed)) return;
+                          Random random(settings.seed, i, 0);
+                          for (int attempt = 0; attempt < kTries; ++attempt)
+                          {
+                              const Ray view = viewRay(cameras, points, random);
+                              const float alpha = std::lerp(settings.alphaLow, settings.alphaHigh, random.uniform());
+                              const vec2 u = random.uniform2();
+                              const auto seen = rays.closest(view.origin, view.direction);
+                              if (!seen) continue;
+                              const vec3 back = -view.direction;
+                              const float side = glm::dot(seen->geometricNormal, back) < 0.0f ? -1.0f : 1.0f;
+                              const vec3 geometric = side * seen->geometricNormal;
+                              vec3 normal = side * seen->shadingNormal;
+                              if (!(glm::dot(normal, back) > 0.0f)) normal = geometric;
+                              const TangentFrame frame = tangentFrame(normal);
+                              const vec3 micro = toWorld(frame, sampleVisibleNormal(toTangent(frame, back), alpha, u));
+                              const vec3 direction = glm::normalize(2.0f * glm::dot(back, micro) * micro - back);
+                              const float cosine = glm::dot(direction, geometric);
+                              if (!(cosine > 0.0f) || !(glm::dot(direction, normal) > 0.0f)) continue;
+                              set.origins[i] = seen->position + 1e-4f * set.diagonal * geometric;
+                              set.directions[i] = direction;
+                              set.startCosine[i] = cosine;
+                              set.truth[i] = truthOf(rays, set.origins[i], direction);
+                              return;
+                          }
+                          blind.store(true);
+                      });
+    if (blind.load())
+        return Error{ErrorCode::badInput, "the viewpoints of scene '" + rays.scene().name + "' see no surface in " +
+                                              std::to_string(kTries) + " tries; give a camera or point that looks at the scene"};
+    return set;
+}
+
+RaySet raySetFrom(const RayScene& rays, std::span<const vec3> origins, std::span<const vec3> directions)
+{
+    assert(origins.size() == directions.size());
+    RaySet set = emptySet(rays, origins.size());
+    tbb::parallel_for(size_t(0), origins.size(),
+                      [&](size_t i)
+                      {
+                          set.origins[i] = origins[i];
+                          set.directions[i] = directions[i];
+                          set.truth[i] = truthOf(rays, origins[i], directions[i]);
+                      });
+    return set;
+}
+
+TraceVerdict judge(const RayTruth& truth, const TracedRay& traced, float diagonal)
+{
+    if (traced.status == TraceStatus::unknown) return TraceVerdict::unresolved;
+    if (traced.status == TraceStatus::miss) return truth.hit ? TraceVerdict::leak : TraceVerdict::right;
+    if (!std::isfinite(traced.t)) return TraceVerdict::unresolved;
+    if (!truth.hit) return TraceVerdict::falseHit;
+    const float beyond = traced.t - truth.t;
+    if (std::abs(beyond) <= 0.01f * diagonal) return TraceVerdict::right;
+    return beyond < 0.0f ? TraceVerdict::falseHit : TraceVerdict::leak;
+}
+
+TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced)
+{
+    assert(set.size() == traced.size());
+    TraceScore score;
+    score.rays = set.size();
+    if (traced.empty()) return score;
+    size_t verdicts[4]{}, exact = 0;
+    std::vector<uint32_t> handoffs, distanceReads, indexReads;
+    for (size_t i = 0; i < traced.size(); ++i)
+    {
+        const TraceVerdict verdict = judge(set.truth[i], traced[i], set.diagonal);
+        ++verdicts[static_cast<size_t>(verdict)];
+        if (verdict == TraceVerdict::right) exact += !set.truth[i].hit || std::abs(traced[i].t - set.truth[i].t) <= 0.002f * set.diagonal;
+        handoffs.push_back(traced[i].handoffs);
+        distanceReads.push_back(traced[i].distanceReads);
+        indexReads.push_back(traced[i].indexReads);
+    }
+    const auto share = [&](size_t count) { return static_cast<double>(count) / static_cast<double>(traced.size()); };
+    score.right1 = share(verdicts[0]);
+    score.right02 = share(exact);
+    score.falseHit = share(verdicts[1]);
+    score.leak = share(verdicts[2]);
+    score.unresolved = share(verdicts[3]);
+    score.handoffs = spreadOf(std::move(handoffs));
+    score.distanceReads = spreadOf(std::move(distanceReads));
+    score.indexReads = spreadOf(std::move(indexReads));
+    return score;
+}
+
+} // namespace sconce

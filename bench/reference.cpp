@@ -1,0 +1,195 @@
+#include "bench/reference.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
+
+#include "bench/path_tracer.h"
+
+namespace sconce
+{
+namespace
+{
+
+struct Pinhole
+{
+    vec3 eye, forward, right, up; // right and up scaled to the half picture
+
+    Pinhole(const Camera& camera, uint32_t width, uint32_t height) : eye(camera.eye), forward(glm::normalize(camera.forward))
+    {
+        const float half = std::tan(0.5f * camera.verticalFov);
+        right = glm::normalize(glm::cross(forward, camera.up));
+        up = glm::cross(right, forward) * half;
+        right *= half * static_cast<float>(width) / static_cast<float>(height);
+    }
+    vec3 direction(float x, float y, uint32_t width, uint32_t height) const // pixels, from the top left corner
+    {
+        const float u = 2.0f * x / static_cast<float>(width) - 1.0f;
+        const float v = 1.0f - 2.0f * y / static_cast<float>(height);
+        return glm::normalize(forward + u * right + v * up);
+    }
+};
+
+bool finite(const PathLight& p)
+{
+    const vec3 sum = p.direct + p.diffuse + p.glossy;
+    return std::isfinite(sum.x + sum.y + sum.z);
+}
+
+Status check(const ReferenceSettings& s)
+{
+    const auto bad = [](const std::string& field, const std::string& value, const std::string& range) {
+        return Error{ErrorCode::badArgument, "reference " + field + " is " + value + "; choose " + range};
+    };
+    if (s.width == 0 || s.width > 16384) return bad("width", std::to_string(s.width), "1 to 16384 pixels");
+    if (s.height == 0 || s.height > 16384) return bad("height", std::to_string(s.height), "1 to 16384 pixels");
+    if (s.samples == 0 || s.samples > 1048576) return bad("samples", std::to_string(s.samples), "1 to 1048576 a pixel");
+    if (s.bounces > 64) return bad("bounces", std::to_string(s.bounces), "0 to 64");
+    if (s.roughness && !(*s.roughness >= 0.0f && *s.roughness <= 1.0f)) return bad("roughness", std::to_string(*s.roughness), "0 to 1");
+    const Camera& c = s.camera;
+    if (!(c.verticalFov > 0.0f && c.verticalFov < 3.1f)) return bad("camera fov", std::to_string(c.verticalFov), "0 to 3.1 radians");
+    const float area = glm::length(glm::cross(c.forward, c.up));
+    if (!(area > 1e-6f) || !std::isfinite(area) || !std::isfinite(glm::length(c.eye)))
+        return bad("camera '" + c.name + "'", "degenerate", "a finite eye and a forward and an up that are not parallel");
+    return success();
+}
+
+struct Frame
+{
+    const ReferenceSettings& settings;
+    const RayScene& rays;
+    const PathTracer& tracer;
+    Pinhole pinhole;
+    ImageSet images;
+    std::vector<double> error; // [pixel] relative squared error of the mean, from the two halves of the samples
+    std::atomic<uint64_t> nonFinite{0};
+
+    enum : size_t
+    {
+        beauty,
+        direct,
+        diffuse,
+        glossy,
+        depth,
+        normal,
+        albedo,
+        roughness
+    };
+
+    Frame(const ReferenceSettings& s, const RayScene& r, const PathTracer& t)
+        : settings(s), rays(r), tracer(t), pinhole(s.camera, s.width, s.height)
+    {
+        images.width = s.width;
+        images.height = s.height;
+        for (const char* name : {"beauty", "direct", "diffuse_indirect", "glossy_indirect"}) images.add(name, 3);
+        images.add("depth", 1);
+        images.add("normal", 3);
+        images.add("albedo", 3);
+        images.add("roughness", 1);
+        error.resize(images.pixelCount());
+    }
+
+    void store(size_t layer, size_t pixel, vec3 value)
+    {
+        for (int i = 0; i < 3; ++i) images.layers[layer].pixels[pixel * 3 + size_t(i)] = value[i];
+    }
+
+    void guides(size_t pixel, vec3 direction)
+    {
+        const auto hit = rays.closest(pinhole.eye, direction);
+        if (!hit) return;
+        const ShadingPoint point = tracer.shade(*hit, -direction);
+        images.layers[depth].pixels[pixel] = glm::dot(hit->position - pinhole.eye, pinhole.forward);
+        images.layers[roughness].pixels[pixel] = point.surface.roughness;
+        store(normal, pixel, point.normal);
+        store(albedo, pixel, point.surface.baseColor);
+    }
+
+    void render(uint32_t x, uint32_t y)
+    {
+        const size_t pixel = size_t(y) * settings.width + x;
+        const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
+        guides(pixel, centre);
+        glm::dvec3 sums[3]{}, halves[2]{};
+        for (uint32_t i = 0; i < settings.samples; ++i)
+        {
+            Random random(settings.seed, pixel, i);
+            const vec2 jitter = random.uniform2();
+            const vec3 ray = settings.pixelCentre ? centre
+                                                  : pinhole.direction(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y,
+                                                                      settings.width, settings.height);
+            const PathLight path = tracer.trace(pinhole.eye, ray, random);
+            if (!finite(path))
+            {
+                nonFinite.fetch_add(1, std::memory_order_relaxed);
+                continue;
+            }
+            sums[0] += path.direct;
+            sums[1] += path.diffuse;
+            sums[2] += path.glossy;
+            halves[i & 1] += path.direct + path.diffuse + path.glossy;
+        }
+        const double count = settings.samples;
+        const vec3 parts[3] = {vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count)};
+        for (size_t i = 0; i < 3; ++i) store(direct + i, pixel, parts[i]);
+        store(beauty, pixel, parts[0] + parts[1] + parts[2]);
+        if (settings.samples < 2) return;
+        const glm::dvec3 a = halves[0] / double((settings.samples + 1) / 2), b = halves[1] / double(settings.samples / 2);
+        const glm::dvec3 mean = 0.5 * (a + b), off = 0.5 * (a - b); // E[off^2] is the variance of the mean
+        error[pixel] = glm::dot(off * off / (mean * mean + 0.01), glm::dvec3(1.0 / 3.0));
+    }
+};
+
+} // namespace
+
+Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress)
+{
+    if (Status fine = check(settings); !fine) return fine.error();
+    if (std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
+    Result<RayScene> rays = RayScene::create(scene);
+    if (!rays) return rays.error();
+    const PathTracer tracer(*rays, settings.roughness, settings.bounces);
+    Frame frame(settings, *rays, tracer);
+
+    std::mutex reporting;
+    std::atomic<bool> cancelled{false};
+    size_t done = 0;
+    tbb::task_group_context context;
+    constexpr uint32_t kTile = 16;
+    tbb::parallel_for(
+        tbb::blocked_range2d<uint32_t>(0, settings.height, kTile, 0, settings.width, kTile),
+        [&](const tbb::blocked_range2d<uint32_t>& tile)
+        {
+            for (uint32_t y = tile.rows().begin(); y != tile.rows().end(); ++y)
+            {
+                if (cancelled.load(std::memory_order_relaxed)) return;
+                for (uint32_t x = tile.cols().begin(); x != tile.cols().end(); ++x) frame.render(x, y);
+            }
+            const std::scoped_lock lock(reporting);
+            done += size_t(tile.rows().size()) * tile.cols().size();
+            if (!cancelled.load() &&
+                !report(progress, "reference", static_cast<double>(done) / static_cast<double>(frame.images.pixelCount())))
+            {
+                cancelled.store(true);
+                context.cancel_group_execution();
+            }
+        },
+        context);
+    if (cancelled.load()) return Error{ErrorCode::cancelled, "the reference picture was cancelled; nothing was kept"};
+
+    Reference result;
+    double sum = 0.0;
+    for (double e : frame.error) sum += e; // in pixel order: the same for any number of threads
+    result.estimatedRelMse =
+        settings.samples < 2 ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(frame.images.pixelCount());
+    result.images = std::move(frame.images);
+    result.nonFinitePaths = frame.nonFinite.load();
+    return result;
+}
+
+} // namespace sconce
