@@ -10,6 +10,9 @@
 #endif
 namespace sconce
 {
+using glm::cos; // the float overloads: C's own would compute in double
+using glm::sin;
+using glm::sqrt;
 using glm::vec2;
 using glm::vec3;
 #else
