@@ -24,6 +24,8 @@ struct LightFieldTwin
     using vec3 = glm::vec<3, Real>;
     using vec4 = glm::vec<4, Real>;
     using vec2f = glm::vec2;
+    using vec3f = glm::vec3;
+    using RayHit = gpu::RayHit;
     using ProbeHeader = gpu::ProbeHeader;
     using TraceQuality = gpu::TraceQuality;
     static constexpr uint kNoProbe = gpu::kNoProbe;
@@ -62,6 +64,8 @@ struct LightFieldTwin
 #include "shaders/shared/light_lookup.h"
 
 #include "shaders/shared/baseline_b0.h"
+
+#include "shaders/shared/ray_query.h"
 };
 
 } // namespace sconce::twin

@@ -88,6 +88,8 @@ SCONCE_FN uint b0FineMarch(SCONCE_INOUT(B0Ray) ray, vec2 P0, vec2 dP, real l0, r
                 ray.word = word;
                 return kHit;
             }
+            ray.pixel = sampled;
+            ray.word = word;
             ray.tMin = max(ray.tMin, min(th, dot(ra * va - ray.relative, ray.direction)));
             return kUnknown;
         }
@@ -214,7 +216,7 @@ SCONCE_FN TraceResult b0TraceRay(vec3 origin, vec3 direction)
         else corner = (corner + 3) & 7;
     }
     result.t = result.status == kHit ? ray.t : (result.status == kMiss ? tMax : ray.tMin);
-    if (result.status == kHit)
+    if (result.status != kMiss && ray.word != 0u) // unknown: the last occluder seen, which the paper takes as hit
     {
         result.face = 0;
         result.pixel = ray.pixel;

@@ -33,6 +33,7 @@ using glm::vec4;
 #extension GL_EXT_scalar_block_layout : require
 #define real float
 #define vec2f vec2
+#define vec3f vec3
 #define SCONCE_FN
 #define SCONCE_OUT(type) out type
 #define SCONCE_INOUT(type) inout type

@@ -76,5 +76,27 @@ struct TraceQuality
 };
 SCONCE_CHECK_SIZE(TraceQuality, 24);
 
+/// A ray and its answer, as `trace_rays.comp` reads and writes them; world space, metres.
+struct Ray
+{
+    vec3 origin;
+    vec3 direction; // unit
+};
+SCONCE_CHECK_SIZE(Ray, 24);
+
+struct RayHit
+{
+    uint status;  // kMiss 0, kHit 1, kUnknown 2
+    float t;      // metres; on miss and unknown the last point reached
+    vec3 position;
+    vec3 normal;  // of the surfel, unit, facing its probe; 0 where none
+    vec3 radiance; // what shading uses: the hit's, the sky's, or on unknown that of the last surfel met (a counted fallback)
+    uint probe;    // that answered, kNoProbe: none
+    int handoffs;
+    int distanceReads;
+    int indexReads;
+};
+SCONCE_CHECK_SIZE(RayHit, 60);
+
 SCONCE_STRUCTS_END
 #endif

@@ -1,0 +1,43 @@
+// What a host's own shader includes to ask the light field: queryRay() traces a ray, irradianceAt() reads prefiltered light.
+// Define SCONCE_FIELD_SET to the descriptor set that LightField::descriptorSet() is bound to (0 when undefined).
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#include "shared/light_field.h"
+#ifndef SCONCE_FIELD_SET
+#define SCONCE_FIELD_SET 0
+#endif
+
+// The maps are read through addresses: one probe set may exceed what a storage buffer descriptor can span (128 MiB on software Vulkan).
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SconceWords { uint word[]; };
+layout(scalar, set = SCONCE_FIELD_SET, binding = 0) readonly buffer SconceField
+{
+    LightFieldInfo field;
+    TraceQuality quality;
+    uvec2 distanceAddress;   // words of FieldData::distance
+    uvec2 radianceAddress;   // FieldData::radiance
+    uvec2 irradianceAddress; // FieldData::irradiance
+};
+layout(scalar, set = SCONCE_FIELD_SET, binding = 1) readonly buffer SconceProbes { ProbeHeader sconceProbes[]; };
+layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
+
+ProbeHeader probeHeader(uint probe) { return sconceProbes[probe]; }
+uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
+uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }
+uint irradianceWord(uint index) { return SconceWords(irradianceAddress).word[index]; }
+uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
+
+#include "shared/texel.h"
+#include "shared/chart.h"
+#include "shared/color.h"
+#include "shared/octree_descent.h"
+#include "shared/probe_trace.h"
+#include "shared/light_lookup.h"
+#include "shared/baseline_b0.h"
+#include "shared/ray_query.h"
+#ifdef SCONCE_TRACER_B0PLUS
+#define sconceQuery b0QueryRay // the baseline, for the bench
+#else
+#define sconceQuery queryRay
+#endif

@@ -1,0 +1,51 @@
+// From a world-space ray to the answer a host sees. Shared text, see probe_trace.h and light_lookup.h.
+
+SCONCE_FN real finiteOr(real value, real otherwise) { return abs(value) < real(1e30) ? value : otherwise; }
+
+/// @param radiance  of the surfel the result names, when it names one
+SCONCE_FN RayHit answer(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r, vec3 normal, vec3 radiance)
+{
+    RayHit hit;
+    real t = finiteOr(r.t * real(field.scale), real(0.0));
+    hit.status = r.status;
+    hit.t = float(t);
+    hit.position = vec3f(finiteOr(origin.x + t * direction.x, real(0.0)), finiteOr(origin.y + t * direction.y, real(0.0)),
+                         finiteOr(origin.z + t * direction.z, real(0.0)));
+    hit.normal = vec3f(normal);
+    vec3 light = radiance;
+    if (r.status == kMiss) light = vec3(field.sky);
+    hit.radiance = vec3f(light);
+    hit.probe = r.probe;
+    hit.handoffs = r.handoffs;
+    hit.distanceReads = r.distanceReads;
+    hit.indexReads = r.indexReads;
+    return hit;
+}
+
+/// A world-space ray through the light field with our tracer. Cost: about 30 distance reads on a cluttered indoor scene.
+SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction)
+{
+    TraceResult r = traceRay((origin - vec3(field.origin)) / real(field.scale), direction);
+    vec3 normal = vec3(real(0.0));
+    vec3 radiance = vec3(real(0.0));
+    if (r.face >= 0)
+    {
+        normal = texelNormal(r.face, r.pixel, r.word);
+        radiance = surfelRadiance(r);
+    }
+    return answer(origin, direction, r, normal, radiance);
+}
+
+/// The same with baseline B0+.
+SCONCE_FN RayHit b0QueryRay(vec3 origin, vec3 direction)
+{
+    TraceResult r = b0TraceRay((origin - vec3(field.origin)) / real(field.scale), direction);
+    vec3 normal = vec3(real(0.0));
+    vec3 radiance = vec3(real(0.0));
+    if (r.face >= 0)
+    {
+        normal = unpackNormal8(r.word >> 16);
+        radiance = b0Radiance(r);
+    }
+    return answer(origin, direction, r, normal, radiance);
+}
