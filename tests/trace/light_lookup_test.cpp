@@ -1,0 +1,97 @@
+// Radiance and irradiance lookups of the shared text, on fields whose light is known.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "runtime/tracer_cpu.h"
+#include "scene/mesh_builder.h"
+#include "tests/support/field_by_rays.h"
+
+namespace sconce
+{
+namespace
+{
+
+struct LitBox
+{
+    Scene scene;
+    FieldData field;
+};
+
+/// A closed box whose probes hold one radiance everywhere.
+LitBox uniformBox(float radiance)
+{
+    LitBox box;
+    MeshBuilder mesh(box.scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
+    const RayScene rays = *RayScene::create(box.scene);
+    const std::vector<vec3> probes = {{0.3f, 0.2f, -0.1f}, {-0.4f, -0.3f, 0.2f}, {0.1f, -0.5f, -0.5f}};
+    box.field = testing_support::fieldByRays(rays, probes, 32);
+    twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
+    const uint32_t light = text.packRadiance(vec3(radiance));
+    box.field.radiance.assign(size_t(radianceWordsPerProbe(gpu::kChartCube, 32)) * probes.size(), light);
+    box.field.irradiance.clear();
+    for (size_t i = 0; i < probes.size() * gpu::kIrradianceSize * gpu::kIrradianceSize; ++i)
+    {
+        box.field.irradiance.push_back(light);
+        box.field.irradiance.push_back(text.realToHalf(0.4f) | (text.realToHalf(0.01f) << 16));
+    }
+    return box;
+}
+
+TEST(LightLookup, UniformRadianceComesBackFromEveryHit)
+{
+    LitBox box = uniformBox(3.0f);
+    twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
+    std::mt19937 random(2);
+    std::normal_distribution<float> normal;
+    for (int i = 0; i < 2000; ++i)
+    {
+        const auto hit = text.queryRay(vec3(0.1f), glm::normalize(vec3(normal(random), normal(random), normal(random))));
+        ASSERT_EQ(hit.status, 1u);
+        EXPECT_NEAR(hit.radiance.g, 3.0f, 0.03f);
+    }
+}
+
+TEST(LightLookup, UniformRadianceGivesThatCosineMeanWhicheverWayASurfaceFaces)
+{
+    LitBox box = uniformBox(3.0f);
+    twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal;
+    std::uniform_real_distribution<float> across(-0.28f, 0.28f);
+    for (int i = 0; i < 2000; ++i)
+    {
+        const vec3 n = glm::normalize(vec3(normal(random), normal(random), normal(random))), p(across(random), across(random), across(random));
+        int reads = 0;
+        EXPECT_NEAR(text.irradianceAt(p, n, p, reads).g, 3.0f, 0.03f);
+    }
+}
+
+TEST(LightLookup, OctahedralMapWrapsWithoutASeam)
+{
+    // A map that holds a smooth function of direction reads smoothly across the square's border.
+    LitBox box = uniformBox(1.0f);
+    twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
+    const uint32_t n = gpu::kIrradianceSize;
+    for (uint32_t y = 0; y < n; ++y)
+        for (uint32_t x = 0; x < n; ++x)
+        {
+            const vec3 d = text.directionFromOctahedral(glm::vec2((float(x) + 0.5f) / float(n), (float(y) + 0.5f) / float(n)));
+            box.field.irradiance[2 * (y * n + x)] = text.packRadiance(vec3(2.0f + d.x, 2.0f + d.y, 2.0f + d.z));
+        }
+    std::mt19937 random(4);
+    std::normal_distribution<float> normal;
+    for (int i = 0; i < 5000; ++i)
+    {
+        const vec3 d = glm::normalize(vec3(normal(random), normal(random), i % 2 ? -std::abs(normal(random)) : 0.02f * normal(random)));
+        const vec3 read = text.probeIrradiance(0, d);
+        EXPECT_NEAR(read.x, 2.0f + d.x, 0.1f);
+        EXPECT_NEAR(read.y, 2.0f + d.y, 0.1f);
+        EXPECT_NEAR(read.z, 2.0f + d.z, 0.12f);
+    }
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,255 @@
+// The tracer's shared text on the CPU, against Embree, closed forms and itself in double precision. Maps are cast by Embree.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "bench/ray_sets.h"
+#include "runtime/tracer_cpu.h"
+#include "scene/builtin_scenes.h"
+#include "scene/mesh_builder.h"
+#include "tests/support/field_by_rays.h"
+
+namespace sconce
+{
+namespace
+{
+
+using testing_support::defaultQuality;
+using testing_support::fieldByRays;
+
+/// A closed box, its inside seen by one probe off its centre.
+Scene closedBox(float scale, vec3 centre = vec3(0.0f))
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(centre - scale * vec3(1.0f, 0.8f, 0.6f), centre + scale * vec3(1.0f, 0.8f, 0.6f), mesh.material("wall", vec3(0.5f)));
+    return scene;
+}
+
+struct Traced
+{
+    Scene scene;
+    RayScene rays;
+    FieldData field;
+
+    Traced(Scene made, std::vector<vec3> probes, uint32_t faceSize)
+        : scene(std::move(made)), rays(*RayScene::create(scene)), field(fieldByRays(rays, probes, faceSize))
+    {
+    }
+    vec3 toField(vec3 world) const { return (world - field.info.origin) / field.info.scale; }
+};
+
+const std::vector<vec3> kCornellProbes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f},  {0.6f, 1.2f, 0.2f},
+                                          {-0.75f, 1.0f, -0.8f}, {0.3f, 0.9f, -0.75f}, {0.0f, 0.3f, 0.85f}};
+
+Traced& cornell()
+{
+    static Traced made(*makeBuiltinScene("cornell-glossy"), kCornellProbes, 128);
+    return made;
+}
+
+RaySet cornellRays(uint32_t count)
+{
+    const std::vector<vec3> points = {{0.0f, 1.0f, 0.8f}, {0.5f, 1.6f, -0.5f}, {-0.7f, 1.5f, 0.3f}};
+    return *glossyRays(cornell().rays, cornell().scene.cameras, points, {.count = count, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = 7});
+}
+
+template <class Real>
+std::vector<TracedRay> traceAll(const Traced& traced, const RaySet& set, const gpu::TraceQuality& quality)
+{
+    twin::LightFieldTwin<Real> text(traced.field, quality);
+    using V = glm::vec<3, Real>;
+    std::vector<TracedRay> out(set.size());
+    for (size_t i = 0; i < set.size(); ++i)
+    {
+        const auto r = text.traceRay((V(set.origins[i]) - V(traced.field.info.origin)) / Real(traced.field.info.scale), V(set.directions[i]));
+        out[i] = {TraceStatus(r.status), float(r.t * Real(traced.field.info.scale)), uint32_t(r.handoffs), uint32_t(r.distanceReads), uint32_t(r.indexReads)};
+    }
+    return out;
+}
+
+vec3 randomDirection(std::mt19937& random)
+{
+    std::normal_distribution<float> normal;
+    return glm::normalize(vec3(normal(random), normal(random), normal(random)));
+}
+
+TEST(ProbeTrace, ClosedBoxFromOneProbeIsExact)
+{
+    Traced traced(closedBox(1.0f), {vec3(0.13f, -0.21f, 0.09f)}, 128);
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> across(-0.95f, 0.95f);
+    for (int i = 0; i < 20000; ++i)
+    {
+        const vec3 origin = vec3(across(random), 0.8f * across(random), 0.6f * across(random));
+        const vec3 direction = randomDirection(random);
+        const auto truth = traced.rays.closest(origin, direction);
+        ASSERT_TRUE(truth);
+        const auto hit = text.queryRay(origin, direction);
+        ASSERT_EQ(hit.status, 1u) << glm::distance(origin, truth->position);
+        EXPECT_NEAR(hit.t, truth->t, 0.004f * traced.scene.bounds().diagonal()); // a texel of 1/128 of the face, in corners
+        EXPECT_NEAR(glm::dot(hit.normal, direction), -std::abs(glm::dot(truth->geometricNormal, direction)), 0.1f);
+    }
+}
+
+TEST(ProbeTrace, RaysThroughTheProbeAndAlongAxesAndDiagonals)
+{
+    const vec3 probe(0.125f, -0.25f, 0.0625f);
+    Traced traced(closedBox(1.0f), {probe}, 128);
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z)
+            {
+                if (x == 0 && y == 0 && z == 0) continue;
+                const vec3 direction = glm::normalize(vec3(x, y, z));
+                for (const vec3 origin : {probe, probe - 0.3f * direction, probe + 0.1f * direction, vec3(0.3f, 0.3f, 0.3f), probe + vec3(0.2f, 0.2f, 0.0f)})
+                {
+                    const auto truth = traced.rays.closest(origin, direction);
+                    const auto hit = text.queryRay(origin, direction);
+                    ASSERT_EQ(hit.status, 1u) << x << y << z;
+                    EXPECT_NEAR(hit.t, truth->t, 0.02f) << x << y << z;
+                }
+            }
+}
+
+TEST(ProbeTrace, CornellIsRight)
+{
+    const RaySet set = cornellRays(20000);
+    const TraceScore score = scoreTraces(set, traceAll<float>(cornell(), set, defaultQuality()));
+    RecordProperty("right1", std::to_string(score.right1));
+    EXPECT_GE(score.right1, 0.975);
+    EXPECT_GE(score.right02, 0.955);
+    EXPECT_LE(score.leak, 0.01);
+    EXPECT_LE(score.falseHit, 0.01);
+    EXPECT_LE(score.distanceReads.mean, 40.0);
+}
+
+TEST(ProbeTrace, ResultDoesNotDependOnTheLevelsUsed)
+{
+    const RaySet set = cornellRays(5000);
+    const auto expected = traceAll<float>(cornell(), set, defaultQuality());
+    for (int coarsest : {0, 2, 4, 6})
+        for (int start : {0, 2, 4})
+        {
+            if (start > coarsest) continue;
+            gpu::TraceQuality quality = defaultQuality();
+            quality.coarsestLevel = coarsest;
+            quality.startLevel = start;
+            const auto got = traceAll<float>(cornell(), set, quality);
+            size_t different = 0;
+            for (size_t i = 0; i < got.size(); ++i)
+                different += got[i].status != expected[i].status || std::abs(got[i].t - expected[i].t) > 1e-4f * expected[i].t;
+            EXPECT_LE(different, got.size() / 1000) << "coarsest " << coarsest << " start " << start;
+        }
+}
+
+TEST(ProbeTrace, FloatAgreesWithDouble)
+{
+    const RaySet set = cornellRays(10000);
+    const auto f = traceAll<float>(cornell(), set, defaultQuality());
+    const auto d = traceAll<double>(cornell(), set, defaultQuality());
+    size_t status = 0, far = 0;
+    for (size_t i = 0; i < f.size(); ++i)
+    {
+        status += f[i].status != d[i].status;
+        far += f[i].status == d[i].status && std::abs(f[i].t - d[i].t) > 1e-3f * d[i].t;
+    }
+    EXPECT_LE(status, f.size() / 1000);
+    EXPECT_LE(far, f.size() / 500);
+}
+
+TEST(ProbeTrace, ScalingTheSceneByPowersOfTwoChangesNoBit)
+{
+    const RaySet set = cornellRays(3000);
+    const auto expected = traceAll<float>(cornell(), set, defaultQuality());
+    for (float scale : {0.0078125f, 128.0f})
+    {
+        Scene scene = *makeBuiltinScene("cornell-glossy");
+        for (vec3& p : scene.positions) p *= scale;
+        std::vector<vec3> probes = kCornellProbes;
+        for (vec3& p : probes) p *= scale;
+        Traced traced(std::move(scene), probes, 128);
+        RaySet scaled = set;
+        for (vec3& o : scaled.origins) o *= scale;
+        const auto got = traceAll<float>(traced, scaled, defaultQuality());
+        size_t different = 0; // Embree's own distances may differ in the last bit
+        for (size_t i = 0; i < got.size(); ++i) different += got[i].status != expected[i].status || std::abs(got[i].t - expected[i].t * scale) > 1e-4f * scale;
+        EXPECT_LE(different, got.size() / 300) << scale;
+    }
+}
+
+TEST(ProbeTrace, WallOnTheBoundsStopsRays)
+{
+    // Rays that end exactly on a wall that is the scene's border, from far away and near.
+    Traced traced(closedBox(1.0f), {vec3(0.0f)}, 64);
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> across(-0.5f, 0.5f);
+    for (int i = 0; i < 5000; ++i)
+    {
+        const vec3 target(1.0f, across(random), across(random)), origin(-0.99f, across(random), across(random));
+        EXPECT_EQ(text.queryRay(origin, glm::normalize(target - origin)).status, 1u);
+    }
+}
+
+TEST(ProbeTrace, SkyIsAMiss)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.quad({-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, mesh.material("ground", vec3(0.5f)));
+    mesh.box({-1, 0, -1}, {1, 1, 1}, 0);
+    scene.sky = vec3(2.0f, 3.0f, 4.0f);
+    Traced traced(std::move(scene), {vec3(2.5f, 0.6f, 0.3f), vec3(-2.5f, 0.6f, 0.3f)}, 64);
+    traced.field.info.sky = traced.scene.sky;
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    const auto hit = text.queryRay(vec3(2.0f, 0.5f, 2.0f), glm::normalize(vec3(0.2f, 1.0f, 0.1f)));
+    EXPECT_EQ(hit.status, 0u);
+    EXPECT_EQ(vec3(hit.radiance), traced.scene.sky);
+}
+
+TEST(ProbeTrace, AnyRayEndsWithFiniteNumbers)
+{
+    Traced& traced = cornell();
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    const float nan = std::nanf(""), inf = INFINITY, tiny = 1e-40f;
+    const std::vector<float> odd = {0.0f, -0.0f, 1.0f, -1.0f, nan, inf, -inf, tiny, 1e30f, 0.5f};
+    std::mt19937 random(9);
+    auto pick = [&] { return odd[random() % odd.size()]; };
+    for (int i = 0; i < 20000; ++i)
+    {
+        const vec3 origin(pick(), pick(), pick()), direction(pick(), pick(), pick());
+        const auto hit = text.queryRay(origin, direction);
+        EXPECT_TRUE(std::isfinite(hit.t) && std::isfinite(hit.position.x + hit.position.y + hit.position.z));
+        EXPECT_TRUE(std::isfinite(hit.normal.x + hit.normal.y + hit.normal.z));
+        EXPECT_LE(hit.handoffs, 24);
+        EXPECT_LT(hit.distanceReads, 20000);
+    }
+}
+
+TEST(ProbeTrace, ThinSheetIsNotPassedFromEitherSide)
+{
+    Scene scene = closedBox(1.0f);
+    MeshBuilder mesh(scene);
+    mesh.quad({0, -0.8f, 0.6f}, {0, -0.8f, -0.6f}, {0, 0.8f, -0.6f}, {0, 0.8f, 0.6f}, 0); // one triangle pair without thickness
+    Traced traced(std::move(scene), {vec3(-0.5f, 0.1f, 0.0f), vec3(0.5f, -0.1f, 0.1f)}, 128);
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    std::mt19937 random(12);
+    std::uniform_real_distribution<float> along(-0.7f, 0.7f), off(1e-3f, 0.9f);
+    int wrong = 0;
+    for (int i = 0; i < 20000; ++i)
+    {
+        const float side = i % 2 ? 1.0f : -1.0f;
+        const vec3 origin(side * off(random), along(random), 0.7f * along(random));
+        const vec3 direction = randomDirection(random);
+        const auto truth = traced.rays.closest(origin, direction);
+        const auto hit = text.queryRay(origin, direction);
+        wrong += hit.status != 1u || std::abs(hit.t - truth->t) > 0.01f * traced.scene.bounds().diagonal();
+    }
+    EXPECT_LE(wrong, 100); // 0.5 %
+}
+
+} // namespace
+} // namespace sconce
