@@ -1,0 +1,350 @@
+#include "placement/free_space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "placement/random.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr uint32_t kNoRegion = 0xffffffffu;
+
+/// What the rays from one point meet.
+struct Surroundings
+{
+    float around = 0.0f; // share of the rays between the horizon and 60 degrees up that hit
+    float all = 0.0f;    // share of all rays that hit
+    float backs = 0.0f;  // share of the hits that are on the backs of single-sided surfaces
+};
+
+/// Directions evenly spread on the sphere: the Fibonacci lattice.
+const std::array<vec3, 96>& sphereDirections()
+{
+    static const std::array<vec3, 96> directions = []
+    {
+        std::array<vec3, 96> made;
+        for (size_t i = 0; i < made.size(); ++i)
+        {
+            const double y = 1.0 - 2.0 * (double(i) + 0.5) / double(made.size());
+            const double angle = 2.0 * std::numbers::pi * double(i) / std::numbers::phi;
+            const double radius = std::sqrt(1.0 - y * y);
+            made[i] = vec3(glm::dvec3(radius * std::cos(angle), y, radius * std::sin(angle)));
+        }
+        return made;
+    }();
+    return directions;
+}
+
+Surroundings lookAround(const Visibility& visibility, vec3 point)
+{
+    int hits = 0, backs = 0, level = 0, levelHits = 0;
+    for (const vec3& direction : sphereDirections())
+    {
+        RayHit hit;
+        const bool met = visibility.cast(point, direction, hit);
+        const bool isLevel = direction.y > 0.0f && direction.y < 0.8660254f;
+        hits += met;
+        backs += met && hit.back;
+        level += isLevel;
+        levelHits += isLevel && met;
+    }
+    return {float(levelHits) / float(level), float(hits) / float(sphereDirections().size()), hits ? float(backs) / float(hits) : 0.0f};
+}
+
+bool keeps(const Surroundings& seen, bool mindBacks)
+{
+    return seen.around >= kEnclosedShare && (!mindBacks || seen.backs <= 0.5f);
+}
+
+/// The scene's box, raised so that low scenes have air above them.
+Bounds fillBox(const Bounds& scene)
+{
+    Bounds box = scene;
+    const vec3 size = scene.size();
+    const float across = std::max(size.x, size.z);
+    box.high.y += std::clamp(0.25f * size.y, 0.02f * across, 0.1f * across);
+    // A scene that is flat along an axis still needs cells there.
+    const float least = 1e-3f * std::max({size.x, size.y, size.z});
+    for (int axis = 0; axis < 3; ++axis)
+        if (box.high[axis] - box.low[axis] < least) box.low[axis] -= 0.5f * least, box.high[axis] += 0.5f * least;
+    return box;
+}
+
+struct Regions
+{
+    std::vector<uint32_t> of;   // [cells] region, or kNoRegion where not free
+    std::vector<size_t> volume; // [regions] cells
+};
+
+/// Free cells joined through faces.
+Regions joinFreeCells(const DistanceField& field)
+{
+    const float blocked = kBlocked * field.voxel;
+    Regions regions;
+    regions.of.assign(field.cells(), kNoRegion);
+    std::vector<uint32_t> open;
+    const size_t stride[3] = {1, size_t(field.size.x), size_t(field.size.x) * size_t(field.size.y)};
+    for (size_t first = 0; first < field.cells(); ++first)
+    {
+        if (regions.of[first] != kNoRegion || field.distance[first] <= blocked) continue;
+        const uint32_t region = uint32_t(regions.volume.size());
+        size_t volume = 0;
+        regions.of[first] = region;
+        open.push_back(uint32_t(first));
+        while (!open.empty())
+        {
+            const size_t at = open.back();
+            open.pop_back();
+            ++volume;
+            const glm::ivec3 cell = field.cell(at);
+            for (int axis = 0; axis < 3; ++axis)
+                for (int side = -1; side <= 1; side += 2)
+                {
+                    if (cell[axis] + side < 0 || cell[axis] + side >= field.size[axis]) continue;
+                    const size_t next = side < 0 ? at - stride[axis] : at + stride[axis];
+                    if (regions.of[next] != kNoRegion || field.distance[next] <= blocked) continue;
+                    regions.of[next] = region;
+                    open.push_back(uint32_t(next));
+                }
+        }
+        regions.volume.push_back(volume);
+    }
+    return regions;
+}
+
+/// Region of the free cell nearest to a point, looking at most `reach` cells around it; kNoRegion when there is none.
+uint32_t regionNear(const DistanceField& field, const Regions& regions, vec3 point, int reach)
+{
+    const glm::ivec3 centre = field.cellAt(point);
+    uint32_t best = kNoRegion;
+    float bestDistance = 0.0f;
+    for (int z = -reach; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+            for (int x = -reach; x <= reach; ++x)
+            {
+                const glm::ivec3 cell = centre + glm::ivec3(x, y, z);
+                if (!field.inside(cell) || regions.of[field.index(cell)] == kNoRegion) continue;
+                const float distance = glm::distance(field.centre(cell), point);
+                if (best != kNoRegion && distance >= bestDistance) continue;
+                best = regions.of[field.index(cell)];
+                bestDistance = distance;
+            }
+    return best;
+}
+
+/// A camera may stand outside the box, before the missing or culled front wall of what it looks at: the first free cell on its axis.
+uint32_t regionOfCamera(const DistanceField& field, const Regions& regions, const Camera& camera)
+{
+    const float far = glm::length(vec3(field.size)) * field.voxel + glm::distance(camera.eye, field.origin);
+    const bool starts = field.inside(field.cellAt(camera.eye));
+    if (starts)
+        if (const uint32_t region = regionNear(field, regions, camera.eye, 2); region != kNoRegion) return region;
+    for (float t = 0.0f; t < far; t += 0.5f * field.voxel)
+    {
+        const glm::ivec3 cell = field.cellAt(camera.eye + t * camera.forward);
+        if (field.inside(cell) && regions.of[field.index(cell)] != kNoRegion) return regions.of[field.index(cell)];
+    }
+    return kNoRegion;
+}
+
+/// The region with the most volume that is enclosed: the inside of a building rather than the air around it. Enclosed volume is estimated
+/// from 256 random cells of each of the largest regions.
+uint32_t mostEnclosedRegion(const DistanceField& field, const Regions& regions, const Visibility& visibility)
+{
+    constexpr size_t kTried = 12, kSamples = 256;
+    std::vector<uint32_t> largest(regions.volume.size());
+    for (uint32_t region = 0; region < largest.size(); ++region) largest[region] = region;
+    std::stable_sort(largest.begin(), largest.end(), [&](uint32_t a, uint32_t b) { return regions.volume[a] > regions.volume[b]; });
+    if (largest.size() > kTried) largest.resize(kTried);
+    std::vector<std::vector<uint32_t>> cellsOf(largest.size());
+    std::vector<uint32_t> slot(regions.volume.size(), kNoRegion);
+    for (uint32_t i = 0; i < largest.size(); ++i) slot[largest[i]] = i;
+    for (size_t at = 0; at < field.cells(); ++at)
+        if (regions.of[at] != kNoRegion && slot[regions.of[at]] != kNoRegion) cellsOf[slot[regions.of[at]]].push_back(uint32_t(at));
+
+    uint32_t best = kNoRegion;
+    double bestScore = -1.0;
+    for (size_t i = 0; i < largest.size(); ++i)
+    {
+        std::vector<float> value(kSamples);
+        tbb::parallel_for(size_t(0), kSamples,
+                          [&](size_t sample)
+                          {
+                              RandomStream random(largest[i], sample);
+                              const uint32_t at = cellsOf[i][random.below(cellsOf[i].size())];
+                              const Surroundings seen = lookAround(visibility, field.centre(field.cell(at)));
+                              value[sample] = keeps(seen, true) ? seen.all * (1.0f - seen.backs) : 0.0f;
+                          });
+        double mean = 0.0;
+        for (float one : value) mean += double(one) / double(kSamples);
+        // The tiny share of the bare volume ranks regions of scenes where nothing is enclosed.
+        const double score = double(cellsOf[i].size()) * (mean + 1e-6);
+        if (score > bestScore) bestScore = score, best = largest[i];
+    }
+    return best;
+}
+
+/// Rule 3: keeps what is enclosed of the reached cells. Judged per block of cells, at the block's cell that is farthest from surfaces.
+void keepEnclosed(FreeSpace& space, const Visibility& visibility)
+{
+    constexpr size_t kBlocks = 24000;
+    const DistanceField& field = space.field;
+    const size_t reached = size_t(std::count(space.reachable.begin(), space.reachable.end(), uint8_t(1)));
+    const int side = std::max(1, int(std::ceil(std::cbrt(double(reached) / double(kBlocks)))));
+    const glm::ivec3 blocks = (field.size + side - 1) / side;
+    const auto blockOf = [&](size_t at)
+    {
+        const glm::ivec3 block = field.cell(at) / side;
+        return size_t(block.x) + size_t(blocks.x) * (size_t(block.y) + size_t(blocks.y) * size_t(block.z));
+    };
+    std::vector<uint32_t> widest(size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z), kNoRegion);
+    for (size_t at = 0; at < field.cells(); ++at)
+    {
+        if (!space.reachable[at]) continue;
+        uint32_t& best = widest[blockOf(at)];
+        if (best == kNoRegion || field.distance[at] > field.distance[best]) best = uint32_t(at);
+    }
+    std::vector<Surroundings> seen(widest.size());
+    tbb::parallel_for(size_t(0), widest.size(),
+                      [&](size_t block)
+                      {
+                          if (widest[block] != kNoRegion) seen[block] = lookAround(visibility, field.centre(field.cell(widest[block])));
+                      });
+    for (const bool mindBacks : {true, false}) // a scene whose winding is all reversed shows backs everywhere: then winding says nothing
+    {
+        size_t used = 0, kept = 0, around = 0;
+        for (size_t block = 0; block < seen.size(); ++block)
+        {
+            used += widest[block] != kNoRegion;
+            around += widest[block] != kNoRegion && keeps(seen[block], false);
+            kept += widest[block] != kNoRegion && keeps(seen[block], mindBacks);
+        }
+        if (kept == 0 || 5 * kept < around) continue;
+        for (size_t at = 0; at < field.cells(); ++at)
+            if (space.reachable[at] && !keeps(seen[blockOf(at)], mindBacks)) space.reachable[at] = 0;
+        return;
+    }
+}
+
+void finish(FreeSpace& space)
+{
+    const DistanceField& field = space.field;
+    space.cells.clear();
+    space.bounds = {};
+    for (size_t at = 0; at < field.cells(); ++at)
+    {
+        if (!space.reachable[at]) continue;
+        space.cells.push_back(uint32_t(at));
+        const vec3 centre = field.centre(field.cell(at));
+        space.bounds.add(centre - 0.5f * field.voxel);
+        space.bounds.add(centre + 0.5f * field.voxel);
+    }
+    space.volume = double(space.cells.size()) * std::pow(double(field.voxel), 3.0);
+}
+
+/// The regions that the seeds lie in: `inside` points, else cameras, else the most enclosed one.
+Result<std::vector<uint32_t>> seedRegions(const Scene& scene, const Visibility& visibility, const DistanceField& field,
+                                          const Regions& regions, std::span<const vec3> inside)
+{
+    std::vector<uint32_t> seeds;
+    for (const vec3& point : inside)
+    {
+        const uint32_t region = regionNear(field, regions, point, 3);
+        if (region == kNoRegion)
+            return Error{ErrorCode::badArgument,
+                         fmt::format("The inside point ({}, {}, {}) lies in solid or outside scene '{}', whose box is ({}, {}, {}) to ({}, "
+                                     "{}, {}); give a point "
+                                     "in free space, at least {} m from surfaces.",
+                                     point.x, point.y, point.z, scene.name, field.origin.x, field.origin.y, field.origin.z,
+                                     field.origin.x + field.voxel * float(field.size.x), field.origin.y + field.voxel * float(field.size.y),
+                                     field.origin.z + field.voxel * float(field.size.z), field.voxel)};
+        seeds.push_back(region);
+    }
+    if (seeds.empty())
+        for (const Camera& camera : scene.cameras)
+            if (const uint32_t region = regionOfCamera(field, regions, camera); region != kNoRegion) seeds.push_back(region);
+    if (seeds.empty() && !regions.volume.empty()) seeds.push_back(mostEnclosedRegion(field, regions, visibility));
+    return seeds;
+}
+
+/// Marks the cells of the given regions and keeps the enclosed ones.
+void fill(FreeSpace& space, const Regions& regions, const std::vector<uint32_t>& seeds, const Visibility& visibility)
+{
+    std::vector<uint8_t> chosen(regions.volume.size(), 0);
+    for (uint32_t region : seeds) chosen[region] = 1;
+    space.reachable.assign(space.field.cells(), 0);
+    for (size_t at = 0; at < space.field.cells(); ++at)
+        if (regions.of[at] != kNoRegion) space.reachable[at] = chosen[regions.of[at]];
+    keepEnclosed(space, visibility);
+    finish(space);
+}
+
+} // namespace
+
+vec3 FreeSpace::randomPoint(RandomStream& random) const
+{
+    const uint32_t at = cells[random.below(cells.size())];
+    // Within the cell, and no farther from its centre than the nearest surface.
+    const float reach = std::min(1.0f, field.distance[at] / (0.8661f * field.voxel));
+    const vec3 jitter(random.uniform() - 0.5f, random.uniform() - 0.5f, random.uniform() - 0.5f);
+    return field.centre(field.cell(at)) + 0.999f * reach * field.voxel * jitter;
+}
+
+Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility, std::span<const vec3> inside, uint32_t voxels,
+                                const Progress& progress)
+{
+    const Error cancelled{ErrorCode::cancelled, "The search for free space was cancelled."};
+    const Error nothing{ErrorCode::badInput,
+                        fmt::format("Scene '{}' has no free space to put probes in: every cell of its box touches a surface. "
+                                    "Check the scene's scale, or raise the number of voxels (now {}).",
+                                    scene.name, voxels)};
+    FreeSpace space;
+    const Bounds box = fillBox(visibility.bounds());
+    if (!report(progress, "distance field", 0.0)) return cancelled;
+    space.field = buildDistanceField(scene, visibility.presence(), box, voxels);
+    if (!report(progress, "free space", 0.0)) return cancelled;
+    {
+        const Regions regions = joinFreeCells(space.field);
+        const Result<std::vector<uint32_t>> seeds = seedRegions(scene, visibility, space.field, regions, inside);
+        if (!seeds) return seeds.error();
+        if (seeds->empty()) return nothing;
+        fill(space, regions, *seeds, visibility);
+    }
+    if (space.cells.empty()) return nothing;
+
+    // One room on a wide plane: spend the cells on the room. What was reached coarsely seeds the finer fill.
+    Bounds room = space.bounds;
+    room.low = glm::max(room.low - 3.0f * space.field.voxel, box.low);
+    room.high = glm::min(room.high + 3.0f * space.field.voxel, box.high);
+    const auto volumeOf = [](const Bounds& of) { return double(of.size().x) * double(of.size().y) * double(of.size().z); };
+    if (volumeOf(room) < 0.4 * volumeOf(box))
+    {
+        if (!report(progress, "distance field", 0.5)) return cancelled;
+        const FreeSpace coarse = std::move(space);
+        space = FreeSpace{};
+        space.field = buildDistanceField(scene, visibility.presence(), room, voxels);
+        if (!report(progress, "free space", 0.5)) return cancelled;
+        const Regions regions = joinFreeCells(space.field);
+        std::vector<uint32_t> seeds;
+        for (uint32_t at : coarse.cells)
+        {
+            const glm::ivec3 cell = space.field.cellAt(coarse.field.centre(coarse.field.cell(at)));
+            if (space.field.inside(cell) && regions.of[space.field.index(cell)] != kNoRegion)
+                seeds.push_back(regions.of[space.field.index(cell)]);
+        }
+        fill(space, regions, seeds, visibility);
+        if (space.cells.empty()) return nothing;
+    }
+    if (!report(progress, "free space", 1.0)) return cancelled;
+    return space;
+}
+
+} // namespace sconce

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "placement/distance_field.h"
+#include "placement/visibility.h"
+#include "scene/progress.h"
+#include "scene/result.h"
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+class RandomStream;
+
+/// The space that is lit: where a viewer can be, and hence where probes may be.
+///
+/// 1. A cell is free when its centre is farther than kBlocked cells from every surface: two neighbouring centres on either side of a
+///    surface, however thin, can't both be free, so walls thinner than a cell still separate.
+/// 2. Free cells are joined through faces. Those joined to a seed count: the `--inside` points, else the cameras, else the region with the
+///    most enclosed volume.
+/// 3. Open scenes: the fill ends at the scene's box, raised a little. Of what it reaches, a cell is kept when at least
+///    kEnclosedShare of its rays between the horizon and 60 degrees above it hit something, so courts, streets and roofless halls are kept,
+///    while a bare plane around a house, the air above the roofs and the outside of a box are not; and when not most of its hits are on the
+///    backs of single-sided surfaces (the underside of a terrain). If no cell is enclosed, the whole reached space is kept.
+struct FreeSpace
+{
+    DistanceField field;
+    std::vector<uint8_t> reachable; // [cells] 1: free, reached and kept
+    std::vector<uint32_t> cells;    // indices of the reachable cells, ascending
+    Bounds bounds;                  // of the reachable cells
+    double volume = 0.0;            // cubic metres
+
+    bool contains(vec3 point) const
+    {
+        const glm::ivec3 cell = field.cellAt(point);
+        return field.inside(cell) && reachable[field.index(cell)] != 0;
+    }
+    float distanceAt(vec3 point) const // metres, of the cell; 0 outside the box
+    {
+        const glm::ivec3 cell = field.cellAt(point);
+        return field.inside(cell) ? field.distance[field.index(cell)] : 0.0f;
+    }
+    /// A point evenly spread over the reachable cells that is on the same side of every surface as its cell's centre.
+    vec3 randomPoint(RandomStream& random) const;
+};
+
+inline constexpr float kBlocked = 0.51f;       // cells; a little above one half, for rounding
+inline constexpr float kEnclosedShare = 0.12f; // of the rays between the horizon and 60 degrees up
+inline constexpr uint32_t kDefaultVoxels = 12u << 20;
+
+/// @param inside  world points, metres, that say which space counts; empty: the cameras, else the largest enclosed region
+/// @param voxels  most cells of the distance field
+/// Errors: badArgument when an inside point lies in solid or outside the scene, badInput when nothing is free, cancelled.
+Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility, std::span<const vec3> inside,
+                                uint32_t voxels = kDefaultVoxels, const Progress& progress = {});
+
+} // namespace sconce

@@ -1,0 +1,260 @@
+#include "placement/place.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "placement/random.h"
+#include "placement/select.h"
+#include "placement/skeleton.h"
+
+namespace sconce
+{
+namespace
+{
+
+// Of the candidates: a proposal from the skeleton, random ones that fill what the skeleton leaves out, and those before gaps in the view.
+constexpr double kRidgeShare = 0.43;
+constexpr double kSpreadShare = 0.32;
+constexpr double kGapShare = 0.25;
+constexpr double kRayShare = 0.8; // of the surfels where rays hit; the rest evenly by area
+constexpr size_t kTableBytes = size_t(400) << 20;
+constexpr uint32_t kGuessedCount = 64; // for the spacing while the count is open
+
+std::string faultOf(const PlaceSettings& settings)
+{
+    const bool ownGrid = settings.grid != glm::ivec3(0);
+    if (settings.count > kMostProbes) return fmt::format("count is {}; give 0 to {}.", settings.count, kMostProbes);
+    if (!(settings.coverage > 0.0f && settings.coverage <= 1.0f))
+        return fmt::format("coverage is {}; give a share above 0 and at most 1.", settings.coverage);
+    if (!(settings.clearance >= 0.0f && std::isfinite(settings.clearance)))
+        return fmt::format("clearance is {} m; give 0 (derived) or a positive length.", settings.clearance);
+    if (settings.voxels < 4096 || settings.voxels > 268'435'456)
+        return fmt::format("voxels is {}; give 4096 to 268435456.", settings.voxels);
+    if (settings.candidates < 100 || settings.candidates > 100'000)
+        return fmt::format("candidates is {}; give 100 to 100000.", settings.candidates);
+    if (settings.surfels < 1000 || settings.surfels > 1'000'000)
+        return fmt::format("surfels is {}; give 1000 to 1000000.", settings.surfels);
+    for (const vec3& point : settings.inside)
+        if (!std::isfinite(point.x + point.y + point.z))
+            return fmt::format("the inside point ({}, {}, {}) is not finite.", point.x, point.y, point.z);
+    if (ownGrid && settings.method != PlaceSettings::Method::grid) return "grid is given but the method is not grid; choose one.";
+    if (ownGrid && settings.count != 0) return "grid and count are both given; choose one.";
+    if (ownGrid && (glm::any(glm::lessThan(settings.grid, glm::ivec3(1))) ||
+                    int64_t(settings.grid.x) * settings.grid.y * int64_t(settings.grid.z) > int64_t(kMostProbes) ||
+                    glm::any(glm::greaterThan(settings.grid, glm::ivec3(int(kMostProbes))))))
+        return fmt::format("grid is {}x{}x{}; give at least 1 along each axis and at most {} in all.", settings.grid.x, settings.grid.y,
+                           settings.grid.z, kMostProbes);
+    return {};
+}
+
+ProbeSet placeGrid(const FreeSpace& space, const PlaceSettings& settings, PlaceReport& report)
+{
+    ProbeSet set;
+    const glm::ivec3 shape =
+        settings.grid != glm::ivec3(0) ? settings.grid : gridShape(space.bounds, settings.count ? settings.count : kGuessedCount);
+    set.grid = gridIn(space.bounds, shape);
+    for (int z = 0; z < shape.z; ++z)
+        for (int y = 0; y < shape.y; ++y)
+            for (int x = 0; x < shape.x; ++x)
+            {
+                const vec3 position = set.grid->origin + set.grid->step * vec3(x, y, z);
+                const bool reachable = space.contains(position);
+                report.gridOutside += !reachable;
+                set.probes.push_back(
+                    {position, fmt::format("grid point {},{},{}{}", x, y, z, reachable ? "" : ", outside the reachable space")});
+            }
+    return set;
+}
+
+/// Positions before surface points that the others leave unseen: out along a random direction of the point's hemisphere, anywhere up to
+/// what is hit there.
+std::vector<Candidate> gapCandidates(const Visibility& visibility, const FreeSpace& space, std::span<const Surfel> gaps, size_t count,
+                                     float clearance, uint64_t seed)
+{
+    if (gaps.empty()) return {};
+    std::vector<Candidate> found;
+    std::vector<vec3> drawn(count);
+    std::vector<uint8_t> legal(count);
+    for (size_t round = 0; round < 12 && found.size() < count; ++round)
+    {
+        tbb::parallel_for(size_t(0), count,
+                          [&](size_t i)
+                          {
+                              RandomStream random(seed, round * count + i);
+                              const Surfel& gap = gaps[random.below(gaps.size())];
+                              vec3 direction = random.direction();
+                              if (glm::dot(direction, gap.normal) < 0.0f) direction = -direction;
+                              const vec3 start = gap.position + visibility.epsilon() * gap.normal;
+                              RayHit hit;
+                              const float reach = visibility.cast(start, direction, hit) ? hit.t : space.bounds.diagonal();
+                              // Squared: the far part of a cone is free more often, the near part sees more of what hides in a corner.
+                              const float share = random.uniform();
+                              drawn[i] = start + share * share * reach * direction;
+                              legal[i] = legalPosition(visibility, space, drawn[i], clearance);
+                          });
+        for (size_t i = 0; i < count && found.size() < count; ++i)
+            if (legal[i]) found.push_back({drawn[i], Candidate::Origin::gap});
+    }
+    return found;
+}
+
+const char* nameOf(Candidate::Origin origin)
+{
+    switch (origin)
+    {
+    case Candidate::Origin::ridge:
+        return "skeleton ridge";
+    case Candidate::Origin::spread:
+        return "free point";
+    case Candidate::Origin::gap:
+        return "gap in the view of others";
+    }
+    return "";
+}
+
+std::vector<vec3> positionsOf(const std::vector<Candidate>& candidates, std::span<const uint32_t> chosen)
+{
+    std::vector<vec3> positions;
+    for (uint32_t candidate : chosen) positions.push_back(candidates[candidate].position);
+    return positions;
+}
+
+Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibility, const FreeSpace& space, const PlaceSettings& settings,
+                                 PlaceReport& report, const Progress& progress)
+{
+    const float clearance = settings.clearance > 0.0f ? settings.clearance : space.field.voxel;
+    report.clearance = clearance;
+    if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
+    const double planned = std::max(double(settings.candidates), 3.5 * double(settings.count)); // many probes need many candidates
+    std::vector<Candidate> candidates = skeletonCandidates(visibility, space, size_t(planned * kRidgeShare), clearance);
+    for (const Candidate& candidate :
+         spreadCandidates(visibility, space, size_t(planned * kSpreadShare), clearance, settings.seed ^ 0x737072656164ull))
+        candidates.push_back(candidate);
+    if (candidates.empty())
+        return Error{ErrorCode::badInput,
+                     fmt::format("Scene '{}' has no free position {} m away from all surfaces; lower the clearance or raise the "
+                                 "number of voxels (a cell is {} m).",
+                                 scene.name, clearance, space.field.voxel)};
+
+    const double samples = std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0));
+    std::vector<Surfel> surfels = raySurfels(visibility, space, size_t(samples * kRayShare), settings.seed);
+    for (const Surfel& surfel : areaSurfels(scene, visibility, space, size_t(samples * (1.0 - kRayShare)), settings.seed))
+        surfels.push_back(surfel);
+    if (surfels.empty())
+        return Error{ErrorCode::badInput,
+                     fmt::format("No ray from the free space of scene '{}' hits a surface; check --inside.", scene.name)};
+
+    const float spacing = probeSpacing(space, settings.count ? settings.count : kGuessedCount);
+    ViewTable table;
+    if (const Status done = extendTable(table, visibility, surfels, candidates, spacing, progress); !done) return done.error();
+    std::vector<uint32_t> chosen = chooseGreedily(table, settings.count, settings.coverage);
+    const std::vector<uint8_t> best = bestValues(table, chosen);
+    std::vector<Surfel> gaps;
+    for (size_t s = 0; s < surfels.size(); ++s)
+        if (best[s] == 0) gaps.push_back(surfels[s]);
+    for (const Candidate& candidate :
+         gapCandidates(visibility, space, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
+        candidates.push_back(candidate);
+    if (const Status done = extendTable(table, visibility, surfels, candidates, spacing, progress); !done) return done.error();
+
+    std::vector<uint32_t> all(candidates.size());
+    for (uint32_t c = 0; c < all.size(); ++c) all[c] = c;
+    const std::vector<uint8_t> bestOfAll = bestValues(table, all);
+    report.candidates = candidates.size();
+    report.bestPossible =
+        float(double(surfels.size() - size_t(std::count(bestOfAll.begin(), bestOfAll.end(), uint8_t(0)))) / double(surfels.size()));
+    if (settings.count > candidates.size())
+        return Error{ErrorCode::badArgument,
+                     fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
+                                 "count or the clearance.",
+                                 settings.count, candidates.size(), clearance)};
+
+    const auto choose = [&](float target)
+    {
+        chosen = chooseGreedily(table, settings.count, target);
+        // A pass costs candidates x surfels x probes bytes; beyond this many probes the greedy choice stands.
+        if (settings.count && chosen.size() <= 600) improveByExchange(table, chosen, 2);
+    };
+    if (!sconce::report(progress, "choice", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
+    choose(settings.coverage);
+    if (settings.count == 0)
+    {
+        // The choice is fitted to its surfels; other samples see a little less, so aim higher until those are content too.
+        float target = settings.coverage;
+        for (int round = 0; round < 6; ++round)
+        {
+            CoverageSettings check;
+            check.seed = settings.seed ^ 0x636865636bull;
+            const Result<Coverage> measured = measureCoverage(scene, visibility, space, positionsOf(candidates, chosen), check, {});
+            if (!measured) return measured.error();
+            if (measured->rays >= settings.coverage || target >= report.bestPossible) break;
+            target = std::min(report.bestPossible, target + std::max(settings.coverage - measured->rays, 1e-4f));
+            choose(target);
+        }
+        if (chosen.size() > kMostProbes)
+            return Error{ErrorCode::badInput, fmt::format("A coverage of {} needs {} probes, more than {}; lower the coverage.",
+                                                          settings.coverage, chosen.size(), kMostProbes)};
+    }
+
+    report.newlyCovered = orderByGain(table, chosen);
+    ProbeSet set;
+    for (size_t k = 0; k < chosen.size(); ++k)
+    {
+        const Candidate& candidate = candidates[chosen[k]];
+        const float fresh = 100.0f * report.newlyCovered[k];
+        set.probes.push_back(
+            {candidate.position, fresh > 0.0f
+                                     ? fmt::format("{}, covers {:.2f} % of the surface first", nameOf(candidate.origin), double(fresh))
+                                     : fmt::format("{}, sees better what others see badly", nameOf(candidate.origin))});
+    }
+    return set;
+}
+
+} // namespace
+
+Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, PlaceReport& report, const Progress& progress)
+{
+    const auto started = std::chrono::steady_clock::now();
+    report = {};
+    if (const std::string fault = faultOf(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Placement: " + fault};
+    if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
+    const Result<Visibility> visibility = Visibility::build(scene);
+    if (!visibility) return visibility.error();
+    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress);
+    if (!space) return space.error();
+    report.reachable = space->bounds;
+    report.reachableVolume = space->volume;
+    report.voxel = space->field.voxel;
+
+    const bool isGrid = settings.method == PlaceSettings::Method::grid;
+    Result<ProbeSet> set = isGrid ? Result<ProbeSet>(placeGrid(*space, settings, report))
+                                  : placeBySkeleton(scene, *visibility, *space, settings, report, progress);
+    if (!set) return set;
+    set->method = isGrid ? "grid" : "sdf";
+    set->scene = scene.name;
+    set->seed = settings.seed;
+
+    std::vector<vec3> positions;
+    for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
+    CoverageSettings check;
+    check.seed = settings.seed;
+    const Result<Coverage> coverage = measureCoverage(scene, *visibility, *space, positions, check, progress);
+    if (!coverage) return coverage.error();
+    report.coverageRays = coverage->rays;
+    report.coverageArea = coverage->area;
+    report.medianCosine = coverage->medianCosine;
+    report.medianDistance = coverage->medianDistance;
+    if (!isGrid && settings.count == 0 && coverage->rays < settings.coverage - 0.001f)
+        report.warnings.push_back(
+            fmt::format("The coverage reached is {:.2f} %, not the {:.2f} % asked for: of the tested positions all together see "
+                        "{:.2f} %. Lower the clearance, or the coverage.",
+                        100.0 * double(coverage->rays), 100.0 * double(settings.coverage), 100.0 * double(report.bestPossible)));
+    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return set;
+}
+
+} // namespace sconce

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "placement/coverage.h"
+#include "placement/free_space.h"
+#include "placement/probe_set.h"
+#include "scene/progress.h"
+#include "scene/result.h"
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+inline constexpr uint32_t kMostProbes = 65535; // the octree's indices have 16 bits
+
+struct PlaceSettings
+{
+    enum class Method
+    {
+        sdf, // skeleton of the distance field, greedy cover, exchange
+        grid // uniform grid in the bounds of the reachable space; points in solid stay
+    };
+    Method method = Method::sdf;
+    glm::ivec3 grid{0};       // grid: points along each axis, product 1..65,535; 0: chosen from `count`
+    uint32_t count = 0;       // probes, 0..65,535; 0: sdf takes the fewest that reach `coverage`, grid takes 64
+    float coverage = 0.995f;  // (0,1], share of the surface points that rays hit; used by sdf when count is 0
+    std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
+    uint64_t seed = 1;        // of every random choice; same scene, settings and seed: same bytes
+    float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
+    uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 10 bytes and 0.5 us each
+    uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
+    uint32_t surfels = 40000;         // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
+};
+
+struct PlaceReport
+{
+    Bounds reachable;             // of the reachable free space, metres
+    double reachableVolume = 0.0; // cubic metres
+    float voxel = 0.0f;           // side of a cell of the distance field, metres
+    float clearance = 0.0f;       // that was kept, metres; 0 for a grid
+    float coverageRays = 0.0f;    // measured on samples that the choice did not use
+    float coverageArea = 0.0f;
+    float medianCosine = 0.0f;       // of what is seen, in the best probe
+    float medianDistance = 0.0f;     // metres, the same
+    float bestPossible = 0.0f;       // sdf: share of the surface points that any candidate at all sees
+    size_t candidates = 0;           // positions that were tested
+    std::vector<float> newlyCovered; // [probes] sdf: share of the surface points that this probe sees and no earlier one
+    uint32_t gridOutside = 0;        // grid: points outside the reachable space
+    double seconds = 0.0;
+    std::vector<std::string> warnings; // a sentence each
+};
+
+/// Decides where the probes of a scene go.
+/// Errors: badArgument names the setting; badInput when the scene has no triangles or no free space; cancelled.
+/// Cost: sdf 5 to 60 s on two cores for 0.1 to 2 million triangles.
+Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, PlaceReport& report, const Progress& progress = {});
+
+/// The grid of about `count` points (within 15 %) whose cells in the bounds are most nearly cubes.
+glm::ivec3 gridShape(const Bounds& bounds, uint32_t count);
+
+/// A grid at the centres of equal cells of the bounds.
+ProbeGrid gridIn(const Bounds& bounds, glm::ivec3 count);
+
+} // namespace sconce

@@ -1,0 +1,170 @@
+#include "placement/select.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include <tbb/parallel_for.h>
+
+namespace sconce
+{
+namespace
+{
+
+/// How much the sum of best values grows with one more row.
+uint64_t gainOf(std::span<const uint8_t> row, const uint8_t* best)
+{
+    uint64_t sum = 0;
+    for (size_t first = 0; first < row.size(); first += 4096) // blocks whose sum fits 32 bits: the inner loop vectorises
+    {
+        const size_t end = std::min(row.size(), first + 4096);
+        uint32_t part = 0;
+        for (size_t s = first; s < end; ++s) part += uint32_t(std::max(row[s], best[s]) - best[s]);
+        sum += part;
+    }
+    return sum;
+}
+
+void raise(std::vector<uint8_t>& best, std::span<const uint8_t> row)
+{
+    for (size_t s = 0; s < row.size(); ++s) best[s] = std::max(best[s], row[s]);
+}
+
+size_t newlySeen(std::span<const uint8_t> row, const std::vector<uint8_t>& best)
+{
+    size_t seen = 0;
+    for (size_t s = 0; s < row.size(); ++s) seen += row[s] != 0 && best[s] == 0;
+    return seen;
+}
+
+/// A candidate and an upper bound of its gain: gains only fall as more is chosen (Minoux 1978, lazy evaluation).
+struct Bound
+{
+    uint64_t gain;
+    uint32_t candidate;
+    bool operator<(const Bound& other) const { return gain != other.gain ? gain < other.gain : candidate > other.candidate; }
+};
+
+} // namespace
+
+Status extendTable(ViewTable& table, const Visibility& visibility, std::span<const Surfel> surfels, std::span<const Candidate> candidates,
+                   float spacing, const Progress& progress)
+{
+    table.surfels = surfels.size();
+    const size_t held = table.candidates();
+    table.values.resize(candidates.size() * surfels.size());
+    constexpr size_t kChunk = 128; // candidates between two reports
+    for (size_t first = held; first < candidates.size(); first += kChunk)
+    {
+        if (!report(progress, "visibility", double(first) / double(candidates.size())))
+            return Error{ErrorCode::cancelled, "The choice of probes was cancelled."};
+        tbb::parallel_for(first, std::min(first + kChunk, candidates.size()),
+                          [&](size_t candidate)
+                          {
+                              uint8_t* row = table.values.data() + candidate * surfels.size();
+                              const vec3 probe = candidates[candidate].position;
+                              for (size_t s = 0; s < surfels.size(); ++s)
+                              {
+                                  const float quality = viewQuality(surfels[s], probe, spacing);
+                                  const bool seen = quality > 0.0f && visibility.sees(probe, surfels[s].position, surfels[s].normal);
+                                  row[s] = seen ? uint8_t(float(ViewTable::kSeen) + std::round(float(ViewTable::kBetter) * quality))
+                                                : uint8_t(0);
+                              }
+                          });
+    }
+    return success();
+}
+
+std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage)
+{
+    const size_t wanted = count ? std::min(count, table.candidates()) : table.candidates();
+    const size_t enough = size_t(std::ceil(double(coverage) * double(table.surfels)));
+    std::vector<uint8_t> best(table.surfels, 0);
+    std::vector<Bound> bounds(table.candidates());
+    tbb::parallel_for(size_t(0), bounds.size(), [&](size_t c) { bounds[c] = {gainOf(table.row(c), best.data()), uint32_t(c)}; });
+    std::priority_queue<Bound> queue(std::less<Bound>(), std::move(bounds));
+    std::vector<uint32_t> chosen;
+    size_t seen = 0, barren = 0; // barren: choices in a row that saw nothing new
+    while (chosen.size() < wanted && !queue.empty() && (count || (seen < enough && barren < 16)))
+    {
+        Bound top = queue.top();
+        queue.pop();
+        const uint64_t gain = gainOf(table.row(top.candidate), best.data());
+        if (!queue.empty() && Bound{gain, top.candidate} < queue.top())
+        {
+            queue.push({gain, top.candidate});
+            continue;
+        }
+        const size_t fresh = newlySeen(table.row(top.candidate), best);
+        seen += fresh;
+        barren = fresh ? 0 : barren + 1;
+        raise(best, table.row(top.candidate));
+        chosen.push_back(top.candidate);
+    }
+    if (!count) chosen.resize(chosen.size() - std::min(barren, chosen.size()));
+    return chosen;
+}
+
+std::vector<uint8_t> bestValues(const ViewTable& table, std::span<const uint32_t> chosen)
+{
+    std::vector<uint8_t> best(table.surfels, 0);
+    for (uint32_t candidate : chosen) raise(best, table.row(candidate));
+    return best;
+}
+
+void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, int rounds)
+{
+    std::vector<uint64_t> gains(table.candidates());
+    for (int round = 0; round < rounds; ++round)
+    {
+        bool improved = false;
+        // The best value of each surfel without slot k: prefix over the slots before it and suffix over those after it.
+        std::vector<uint8_t> before(table.surfels, 0);
+        std::vector<std::vector<uint8_t>> after(chosen.size() + 1, std::vector<uint8_t>(table.surfels, 0));
+        for (size_t k = chosen.size(); k-- > 0;)
+        {
+            after[k] = after[k + 1];
+            raise(after[k], table.row(chosen[k]));
+        }
+        for (size_t k = 0; k < chosen.size(); ++k)
+        {
+            std::vector<uint8_t> without = before;
+            raise(without, after[k + 1]);
+            tbb::parallel_for(size_t(0), gains.size(), [&](size_t c) { gains[c] = gainOf(table.row(c), without.data()); });
+            const size_t best = size_t(std::max_element(gains.begin(), gains.end()) - gains.begin());
+            if (gains[best] > gains[chosen[k]])
+            {
+                chosen[k] = uint32_t(best);
+                improved = true;
+            }
+            raise(before, table.row(chosen[k]));
+        }
+        if (!improved) return;
+    }
+}
+
+std::vector<float> orderByGain(const ViewTable& table, std::vector<uint32_t>& chosen)
+{
+    std::vector<uint8_t> best(table.surfels, 0);
+    std::vector<float> shares;
+    for (size_t k = 0; k < chosen.size(); ++k)
+    {
+        size_t pick = k, most = 0;
+        for (size_t other = k; other < chosen.size(); ++other)
+        {
+            const size_t fresh = newlySeen(table.row(chosen[other]), best);
+            if (fresh > most) most = fresh, pick = other;
+        }
+        std::rotate(chosen.begin() + ptrdiff_t(k), chosen.begin() + ptrdiff_t(pick), chosen.begin() + ptrdiff_t(pick) + 1);
+        raise(best, table.row(chosen[k]));
+        shares.push_back(table.surfels ? float(most) / float(table.surfels) : 0.0f);
+        if (most == 0) // nothing new from any of the rest: their order stays
+        {
+            shares.resize(chosen.size(), 0.0f);
+            break;
+        }
+    }
+    return shares;
+}
+
+} // namespace sconce

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "placement/skeleton.h"
+#include "placement/surface_samples.h"
+#include "scene/progress.h"
+#include "scene/result.h"
+
+namespace sconce
+{
+
+/// What each candidate sees of each surfel: 0 nothing, else kSeen + kBetter * viewQuality. That a surfel is seen at all is worth as much as
+/// the step from the worst view to the best. Whole numbers, so that sums are the same in any order.
+struct ViewTable
+{
+    static constexpr uint8_t kSeen = 128;
+    static constexpr uint8_t kBetter = 127;
+    size_t surfels = 0;
+    std::vector<uint8_t> values; // [candidates][surfels]
+
+    size_t candidates() const { return surfels ? values.size() / surfels : 0; }
+    std::span<const uint8_t> row(size_t candidate) const { return {values.data() + candidate * surfels, surfels}; }
+};
+
+/// Adds the rows of the candidates that the table does not hold yet. Errors: cancelled.
+Status extendTable(ViewTable& table, const Visibility& visibility, std::span<const Surfel> surfels, std::span<const Candidate> candidates,
+                   float spacing, const Progress& progress);
+
+/// Greedy cover (Nemhauser, Wolsey, Fisher 1978: within 1 - 1/e of the best): each next candidate adds most to the sum over surfels of the
+/// best value so far. What is already seen can still gain quality, so probes beyond full coverage go where points are seen badly.
+/// @param count     how many to choose; 0: until `coverage` of the surfels is seen, or no candidate sees another
+std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage);
+
+/// Exchange (Teitz and Bart 1968): replaces a chosen candidate by a better one while that gains, at most `rounds` times through.
+void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, int rounds);
+
+/// Sorts the chosen so that each next one sees most surfels that the earlier do not, and says which share that is.
+std::vector<float> orderByGain(const ViewTable& table, std::vector<uint32_t>& chosen);
+
+/// Best value of each surfel over the chosen candidates.
+std::vector<uint8_t> bestValues(const ViewTable& table, std::span<const uint32_t> chosen);
+
+} // namespace sconce

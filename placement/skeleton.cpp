@@ -1,0 +1,144 @@
+#include "placement/skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <tbb/parallel_for.h>
+
+#include "placement/random.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr float kRidgeSlope =
+    0.75f; // two walls that meet at 83 degrees or less give a steeper field; the noise of the far field is below 0.2
+
+bool onRidge(const DistanceField& field, size_t at)
+{
+    const glm::ivec3 cell = field.cell(at);
+    // Across a thin wall the unsigned field rises again, so never look past the nearest surface.
+    const int step = std::min(2, int(field.distance[at] / field.voxel));
+    if (step < 1) return false;
+    vec3 slope(0.0f);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        glm::ivec3 low = cell, high = cell;
+        low[axis] = std::max(cell[axis] - step, 0);
+        high[axis] = std::min(cell[axis] + step, field.size[axis] - 1);
+        if (high[axis] == low[axis]) continue;
+        slope[axis] =
+            (field.distance[field.index(high)] - field.distance[field.index(low)]) / (field.voxel * float(high[axis] - low[axis]));
+    }
+    return glm::length(slope) < kRidgeSlope;
+}
+
+struct Cluster
+{
+    glm::dvec3 sum{0.0};
+    size_t cells = 0;
+};
+
+uint64_t clusterKey(glm::ivec3 cell, int side)
+{
+    const glm::ivec3 block = cell / side;
+    return uint64_t(block.x) | uint64_t(block.y) << 20 | uint64_t(block.z) << 40;
+}
+
+size_t countClusters(const DistanceField& field, const std::vector<uint32_t>& ridge, int side)
+{
+    std::vector<uint64_t> keys;
+    keys.reserve(ridge.size());
+    for (uint32_t at : ridge) keys.push_back(clusterKey(field.cell(at), side));
+    std::sort(keys.begin(), keys.end());
+    return size_t(std::unique(keys.begin(), keys.end()) - keys.begin());
+}
+
+} // namespace
+
+bool legalPosition(const Visibility& visibility, const FreeSpace& space, vec3 point, float clearance)
+{
+    if (!space.contains(point) || visibility.distance(point, 1.001f * clearance) < clearance) return false;
+    // A cell next to a thin wall may hold points beyond it: the way to the cell's centre must be free.
+    const vec3 centre = space.field.centre(space.field.cellAt(point));
+    return visibility.unoccluded(point, centre);
+}
+
+std::vector<Candidate> skeletonCandidates(const Visibility& visibility, const FreeSpace& space, size_t count, float clearance)
+{
+    const DistanceField& field = space.field;
+    std::vector<uint8_t> isRidge(space.cells.size());
+    tbb::parallel_for(size_t(0), space.cells.size(),
+                      [&](size_t i)
+                      {
+                          const uint32_t at = space.cells[i];
+                          isRidge[i] = field.distance[at] >= clearance && onRidge(field, at);
+                      });
+    std::vector<uint32_t> ridge;
+    for (size_t i = 0; i < isRidge.size(); ++i)
+        if (isRidge[i]) ridge.push_back(space.cells[i]);
+    if (ridge.empty()) return {};
+
+    // The smallest cluster side that gives no more than `count` clusters; the number falls as the side grows.
+    int low = 1, high = std::max({field.size.x, field.size.y, field.size.z});
+    while (low < high)
+    {
+        const int middle = (low + high) / 2;
+        if (countClusters(field, ridge, middle) > count)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const int side = low;
+    std::unordered_map<uint64_t, Cluster> clusters;
+    for (uint32_t at : ridge)
+    {
+        Cluster& cluster = clusters[clusterKey(field.cell(at), side)];
+        cluster.sum += glm::dvec3(field.cell(at));
+        ++cluster.cells;
+    }
+    std::unordered_map<uint64_t, std::pair<double, uint32_t>> nearest; // to the centroid: squared distance in cells, cell
+    std::vector<uint64_t> order;                                       // of first appearance, so that the result does not hang on hashing
+    for (uint32_t at : ridge)
+    {
+        const uint64_t key = clusterKey(field.cell(at), side);
+        const Cluster& cluster = clusters[key];
+        const glm::dvec3 away = glm::dvec3(field.cell(at)) - cluster.sum / double(cluster.cells);
+        const auto [entry, isNew] = nearest.try_emplace(key, glm::dot(away, away), at);
+        if (isNew)
+            order.push_back(key);
+        else if (glm::dot(away, away) < entry->second.first)
+            entry->second = {glm::dot(away, away), at};
+    }
+    std::vector<Candidate> found;
+    for (uint64_t key : order)
+    {
+        const vec3 position = field.centre(field.cell(nearest[key].second));
+        if (legalPosition(visibility, space, position, clearance)) found.push_back({position, Candidate::Origin::ridge});
+    }
+    return found;
+}
+
+std::vector<Candidate> spreadCandidates(const Visibility& visibility, const FreeSpace& space, size_t count, float clearance, uint64_t seed)
+{
+    std::vector<Candidate> found;
+    std::vector<vec3> drawn(std::max<size_t>(count, 64));
+    std::vector<uint8_t> legal(drawn.size());
+    for (size_t round = 0; round < 64 && found.size() < count; ++round)
+    {
+        tbb::parallel_for(size_t(0), drawn.size(),
+                          [&](size_t i)
+                          {
+                              RandomStream random(seed, round * drawn.size() + i);
+                              drawn[i] = space.randomPoint(random);
+                              legal[i] = legalPosition(visibility, space, drawn[i], clearance);
+                          });
+        for (size_t i = 0; i < drawn.size() && found.size() < count; ++i)
+            if (legal[i]) found.push_back({drawn[i], Candidate::Origin::spread});
+    }
+    return found;
+}
+
+} // namespace sconce

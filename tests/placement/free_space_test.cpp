@@ -1,0 +1,138 @@
+#include "placement/free_space.h"
+
+#include <gtest/gtest.h>
+
+#include "placement/random.h"
+#include "tests/placement/box_scenes.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace test;
+
+FreeSpace spaceOf(const Scene& scene, std::vector<vec3> inside = {}, uint32_t voxels = 200000)
+{
+    const auto visibility = Visibility::build(scene);
+    EXPECT_TRUE(visibility);
+    auto space = findFreeSpace(scene, *visibility, inside, voxels);
+    EXPECT_TRUE(space) << (space ? "" : space.error().message);
+    return space ? std::move(*space) : FreeSpace{};
+}
+
+void expectBox(const FreeSpace& space, vec3 low, vec3 high)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        EXPECT_NEAR(space.bounds.low[axis], low[axis], 1.1f * space.field.voxel) << axis;
+        EXPECT_NEAR(space.bounds.high[axis], high[axis], 1.1f * space.field.voxel) << axis;
+    }
+}
+
+TEST(FreeSpace, ClosedRoomIsFreeUpToItsWalls)
+{
+    const FreeSpace space = spaceOf(closedRoom({4, 2, 3}));
+    expectBox(space, vec3(0), {4, 2, 3});
+    EXPECT_NEAR(space.volume, 24.0, 24.0 * 0.12);
+}
+
+TEST(FreeSpace, ThinWallSeparatesAndAPointInsideChooses)
+{
+    const Scene scene = dividedRoom();
+    expectBox(spaceOf(scene, {{5, 1, 2}}), {4, 0, 0}, {6, 3, 4});
+    expectBox(spaceOf(scene, {{1, 1, 2}}), {0, 0, 0}, {4, 3, 4});
+    expectBox(spaceOf(scene, {{1, 1, 2}, {5, 1, 2}}), {0, 0, 0}, {6, 3, 4});
+}
+
+TEST(FreeSpace, SlantedThinWallSeparates)
+{
+    Scene scene = closedRoom({4, 4, 4});
+    addQuad(scene, {0.7f, 0, 0}, {2.9f, 0, 4.0f}, {0, 4, 0});
+    const FreeSpace space = spaceOf(scene, {{3.5f, 2, 0.5f}});
+    for (uint32_t at : space.cells)
+    {
+        const vec3 p = space.field.centre(space.field.cell(at));
+        ASSERT_GT((p.x - 0.7f) * 4.0f - p.z * 2.9f, 0.0f) << p.x << ' ' << p.z;
+    }
+}
+
+TEST(FreeSpace, WithoutSeedsTheLargestRoomCounts)
+{
+    expectBox(spaceOf(dividedRoom()), {0, 0, 0}, {4, 3, 4});
+}
+
+TEST(FreeSpace, CameraChoosesTheRoom)
+{
+    Scene scene = dividedRoom();
+    Camera camera;
+    camera.eye = {5, 1, 2};
+    scene.cameras.push_back(camera);
+    expectBox(spaceOf(scene), {4, 0, 0}, {6, 3, 4});
+}
+
+// The usual Cornell box: no front wall, and the camera stands before it.
+TEST(FreeSpace, CameraBeforeAnOpenFrontMeansTheInside)
+{
+    Scene scene = closedRoom({2, 2, 2});
+    scene.triangles.resize(10), scene.triangleMaterial.resize(10); // the last wall added is z = 2
+    Camera camera;
+    camera.eye = {1, 1, 6};
+    scene.cameras.push_back(camera);
+    expectBox(spaceOf(scene), vec3(0), vec3(2));
+}
+
+TEST(FreeSpace, RoomOnAWidePlaneIsTheRoom)
+{
+    Scene scene = closedRoom({6, 3, 4});
+    for (vec3& position : scene.positions) position.y += 0.01f;
+    scene.triangles.resize(10), scene.triangleMaterial.resize(10); // open at z = 4
+    addQuad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0});
+    const FreeSpace space = spaceOf(scene, {{3, 1.5f, 2}}, 400000);
+    EXPECT_TRUE(space.contains({3, 1.5f, 2}));
+    EXPECT_GT(space.bounds.low.x, -8.0f);
+    EXPECT_LT(space.bounds.high.x, 14.0f);
+    EXPECT_LT(space.bounds.high.z, 12.0f);
+    EXPECT_LT(space.field.voxel, 0.2f) << "cells were spent on the plane";
+}
+
+TEST(FreeSpace, UndersideOfATerrainDoesNotCount)
+{
+    // A sheet with its front upward, walls around the yard above it, and a cellar of backs below.
+    Scene scene = emptyScene();
+    addQuad(scene, {0, 0, 0}, {0, 0, 10}, {10, 0, 0});
+    addQuad(scene, {0, 0, 0}, {10, 0, 0}, {0, 4, 0}), addQuad(scene, {0, 0, 10}, {0, 4, 0}, {10, 0, 0});
+    addQuad(scene, {0, 0, 0}, {0, 4, 0}, {0, 0, 10}), addQuad(scene, {10, 0, 0}, {0, 0, 10}, {0, 4, 0});
+    addCrate(scene, {0, -9, 0}, {10, -8, 10});
+    addQuad(scene, {0, -8, 0}, {0, 8, 0}, {10, 0, 0}), addQuad(scene, {0, -8, 10}, {10, 0, 0}, {0, 8, 0});
+    addQuad(scene, {0, -8, 0}, {0, 0, 10}, {0, 8, 0}), addQuad(scene, {10, -8, 0}, {0, 8, 0}, {0, 0, 10});
+    const FreeSpace space = spaceOf(scene);
+    EXPECT_GT(space.bounds.low.y, -0.5f);
+    EXPECT_TRUE(space.contains({5, 1, 5}));
+}
+
+TEST(FreeSpace, RandomPointsStayOnTheirSideOfAThinWall)
+{
+    const FreeSpace space = spaceOf(dividedRoom(), {{1, 1, 2}}, 5000);
+    RandomStream random(5, 0);
+    for (int i = 0; i < 20000; ++i)
+    {
+        const vec3 p = space.randomPoint(random);
+        ASSERT_TRUE(p.x > 0 && p.x < 4 && p.y > 0 && p.y < 3 && p.z > 0 && p.z < 4) << p.x << ' ' << p.y << ' ' << p.z;
+    }
+}
+
+TEST(FreeSpace, PointOutsideTheSceneIsRefusedWithItsNumbers)
+{
+    const Scene scene = closedRoom({4, 2, 3});
+    const auto visibility = Visibility::build(scene);
+    ASSERT_TRUE(visibility);
+    const std::vector<vec3> inside{{40, 1, 1}};
+    const auto space = findFreeSpace(scene, *visibility, inside, 50000);
+    ASSERT_FALSE(space);
+    EXPECT_EQ(space.error().code, ErrorCode::badArgument);
+    EXPECT_NE(space.error().message.find("(40, 1, 1)"), std::string::npos) << space.error().message;
+}
+
+} // namespace
+} // namespace sconce

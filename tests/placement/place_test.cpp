@@ -1,0 +1,204 @@
+#include "placement/place.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/placement/box_scenes.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace test;
+
+PlaceSettings quick(uint32_t count)
+{
+    PlaceSettings settings;
+    settings.count = count;
+    settings.voxels = 100000;
+    settings.candidates = 800;
+    settings.surfels = 10000;
+    return settings;
+}
+
+ProbeSet placed(const Scene& scene, const PlaceSettings& settings, PlaceReport& report)
+{
+    auto set = placeProbes(scene, settings, report);
+    EXPECT_TRUE(set) << (set ? "" : set.error().message);
+    return set ? std::move(*set) : ProbeSet{};
+}
+
+TEST(PlaceProbes, EveryProbeKeepsItsClearanceFromEveryTriangle)
+{
+    const Scene scene = furnishedRoom();
+    for (const float clearance : {0.0f, 0.35f})
+    {
+        PlaceSettings settings = quick(24);
+        settings.clearance = clearance;
+        PlaceReport report;
+        const ProbeSet set = placed(scene, settings, report);
+        ASSERT_EQ(set.probes.size(), 24u);
+        EXPECT_EQ(report.clearance, clearance > 0.0f ? clearance : report.voxel);
+        for (const PlacedProbe& probe : set.probes)
+        {
+            EXPECT_GE(bruteDistance(scene, probe.position), report.clearance - 1e-5f) << probe.why;
+            EXPECT_FALSE(probe.why.empty());
+        }
+        EXPECT_GT(report.coverageRays, 0.999f);
+    }
+}
+
+TEST(PlaceProbes, StayOnTheReachableSideOfAThinWall)
+{
+    PlaceSettings settings = quick(12);
+    settings.inside = {{5, 1, 2}};
+    PlaceReport report;
+    for (const PlacedProbe& probe : placed(dividedRoom(), settings, report).probes)
+    {
+        EXPECT_GT(probe.position.x, 4.0f);
+        EXPECT_LT(probe.position.x, 6.0f);
+    }
+}
+
+TEST(PlaceProbes, SameBytesOnOneAndTwoThreadsAndOtherSeedsDiffer)
+{
+    const Scene scene = furnishedRoom();
+    const auto run = [&scene](size_t threads, uint64_t seed)
+    {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        PlaceSettings settings = quick(10);
+        settings.seed = seed;
+        PlaceReport report;
+        return placed(scene, settings, report);
+    };
+    const auto same = [](const ProbeSet& a, const ProbeSet& b)
+    {
+        return std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(),
+                          [](const PlacedProbe& x, const PlacedProbe& y) { return x.position == y.position && x.why == y.why; });
+    };
+    const ProbeSet one = run(1, 1);
+    EXPECT_TRUE(same(one, run(2, 1)));
+    EXPECT_TRUE(same(one, run(2, 1)));
+    EXPECT_FALSE(same(one, run(2, 2)));
+}
+
+TEST(PlaceProbes, EmptyRoomNeedsOneProbe)
+{
+    PlaceSettings settings = quick(0);
+    settings.coverage = 0.99f;
+    PlaceReport report;
+    EXPECT_EQ(placed(closedRoom({4, 3, 4}), settings, report).probes.size(), 1u);
+    EXPECT_GT(report.coverageRays, 0.99f);
+    EXPECT_NEAR(report.newlyCovered.at(0), 1.0f, 1e-3f);
+}
+
+TEST(PlaceProbes, CountFollowsFromTheCoverageAskedFor)
+{
+    PlaceSettings settings = quick(0);
+    size_t last = 0;
+    for (const float coverage : {0.7f, 0.95f, 0.998f})
+    {
+        settings.coverage = coverage;
+        PlaceReport report;
+        const ProbeSet set = placed(furnishedRoom(), settings, report);
+        EXPECT_GE(report.coverageRays, coverage - 0.002f);
+        EXPECT_GT(set.probes.size(), last);
+        EXPECT_LT(set.probes.size(), 16u);
+        last = set.probes.size();
+    }
+}
+
+TEST(PlaceProbes, GridFillsTheBoundsOfTheReachableSpace)
+{
+    PlaceSettings settings = quick(0);
+    settings.method = PlaceSettings::Method::grid;
+    settings.grid = {2, 3, 4};
+    settings.inside = {{5, 1, 2}};
+    PlaceReport report;
+    const ProbeSet set = placed(dividedRoom(), settings, report);
+    ASSERT_TRUE(set.grid);
+    ASSERT_EQ(set.probes.size(), 24u);
+    // The reachable room is [4,6] x [0,3] x [0,4]: cells of 1 m each way, within the field's resolution.
+    for (int z = 0; z < 4; ++z)
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 2; ++x)
+            {
+                const vec3 p = set.probes[size_t(x + 2 * (y + 3 * z))].position;
+                EXPECT_LT(glm::length(p - (vec3(4.5f, 0.5f, 0.5f) + vec3(x, y, z))), 2.0f * report.voxel);
+                EXPECT_EQ(p, set.grid->origin + set.grid->step * vec3(x, y, z));
+            }
+    EXPECT_EQ(report.gridOutside, 0u);
+}
+
+TEST(PlaceProbes, GridKeepsItsPointsInSolids)
+{
+    PlaceSettings settings = quick(0);
+    settings.method = PlaceSettings::Method::grid;
+    settings.grid = {20, 10, 13};
+    PlaceReport report;
+    const ProbeSet set = placed(furnishedRoom(), settings, report);
+    EXPECT_EQ(set.probes.size(), 2600u);
+    EXPECT_GT(report.gridOutside, 20u);
+}
+
+TEST(PlaceProbes, BadSettingsAreNamed)
+{
+    const Scene scene = closedRoom({4, 3, 4});
+    const auto messageOf = [&scene](auto change)
+    {
+        PlaceSettings settings = quick(4);
+        change(settings);
+        PlaceReport report;
+        const auto set = placeProbes(scene, settings, report);
+        EXPECT_FALSE(set);
+        if (set) return std::string();
+        EXPECT_EQ(set.error().code, ErrorCode::badArgument);
+        return set.error().message;
+    };
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.count = 65536; }).find("65536"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.coverage = 0; }).find("coverage"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.coverage = NAN; }).find("coverage"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.clearance = -1; }).find("clearance"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.voxels = 1; }).find("voxels"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.inside = {{INFINITY, 0, 0}}; }).find("inside"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.grid = {2, 2, 2}; }).find("grid"), std::string::npos);
+    const auto grid = [](PlaceSettings& s, glm::ivec3 shape) { s.method = PlaceSettings::Method::grid, s.count = 0, s.grid = shape; };
+    EXPECT_NE(messageOf([&](PlaceSettings& s) { grid(s, {2, 0, 2}); }).find("2x0x2"), std::string::npos);
+    EXPECT_NE(messageOf([&](PlaceSettings& s) { grid(s, {60000, 60000, 60000}); }).find("60000"), std::string::npos);
+}
+
+TEST(PlaceProbes, ClearanceThatNoPositionKeepsIsNamed)
+{
+    PlaceSettings settings = quick(4);
+    settings.clearance = 1.6f; // the room is 3 m high
+    PlaceReport report;
+    const auto set = placeProbes(closedRoom({4, 3, 4}), settings, report);
+    ASSERT_FALSE(set);
+    EXPECT_EQ(set.error().code, ErrorCode::badInput);
+    EXPECT_NE(set.error().message.find("1.6 m"), std::string::npos) << set.error().message;
+}
+
+TEST(PlaceProbes, SceneWithoutTrianglesGetsASentence)
+{
+    PlaceReport report;
+    const auto set = placeProbes(emptyScene(), quick(4), report);
+    ASSERT_FALSE(set);
+    EXPECT_EQ(set.error().code, ErrorCode::badInput);
+    EXPECT_FALSE(set.error().message.empty());
+}
+
+TEST(PlaceProbes, CancellingEndsTheWork)
+{
+    PlaceReport report;
+    int calls = 0;
+    const auto set = placeProbes(furnishedRoom(), quick(4), report, [&calls](std::string_view, double) { return ++calls < 4; });
+    ASSERT_FALSE(set);
+    EXPECT_EQ(set.error().code, ErrorCode::cancelled);
+    EXPECT_EQ(calls, 4);
+}
+
+} // namespace
+} // namespace sconce
