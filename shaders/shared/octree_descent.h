@@ -12,10 +12,10 @@ SCONCE_FN ivec3 octreeVoxel(vec3 p)
 {
     ivec3 count = ivec3(field.topCells.x << field.topShift, field.topCells.y << field.topShift, field.topCells.z << field.topShift);
     vec3 v = (p - vec3(field.boundsLow)) / real(field.voxel);
-    // min first: it replaces a NaN by a number on every side
-    real x = max(min(v.x, real(count.x) - real(0.5)), real(0.0));
-    real y = max(min(v.y, real(count.y) - real(0.5)), real(0.0));
-    real z = max(min(v.z, real(count.z) - real(0.5)), real(0.0));
+    // min(a, b) is b only when b < a: with the number first, a NaN becomes the number
+    real x = max(real(0.0), min(real(count.x) - real(0.5), v.x));
+    real y = max(real(0.0), min(real(count.y) - real(0.5), v.y));
+    real z = max(real(0.0), min(real(count.z) - real(0.5), v.z));
     return ivec3(int(x), int(y), int(z));
 }
 
