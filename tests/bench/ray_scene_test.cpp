@@ -1,0 +1,62 @@
+#include "bench/ray_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/bench/test_scenes.h"
+
+namespace sconce
+{
+namespace
+{
+
+TEST(RayScene, HitHasDistanceUvNormalAndMaterial)
+{
+    Scene scene;
+    scene.materials = {Material{}, Material{}};
+    test::addTriangle(scene, {{0, 0, -2}, {1, 0, -2}, {0, 1, -2}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, 1);
+    const auto rays = RayScene::create(scene);
+    ASSERT_TRUE(rays.ok());
+    const auto hit = rays->closest({0.25f, 0.5f, 0}, {0, 0, -1});
+    ASSERT_TRUE(hit.has_value());
+    EXPECT_FLOAT_EQ(hit->t, 2.0f);
+    EXPECT_FLOAT_EQ(hit->uv.x, 0.25f); // corner i's uv is the i-th unit vector
+    EXPECT_FLOAT_EQ(hit->uv.y, 0.5f);
+    EXPECT_EQ(hit->geometricNormal, vec3(0, 0, 1));
+    EXPECT_EQ(hit->material, 1u);
+    EXPECT_TRUE(rays->occluded({0.25f, 0.5f, 0}, {0, 0, -1}, 2.1f));
+    EXPECT_FALSE(rays->occluded({0.25f, 0.5f, 0}, {0, 0, -1}, 1.9f));
+    EXPECT_FALSE(rays->closest({0.75f, 0.75f, 0}, {0, 0, -1}).has_value());
+}
+
+// Left half of the picture has alpha 0.5, the right one 1; a cutoff of 0.75 cuts the left half out, one of 0.5 (alpha >= cutoff) none.
+TEST(RayScene, AlphaBelowTheCutoffIsNotThere)
+{
+    Scene scene;
+    Image image{"mask", 8, 1, {}};
+    for (int i = 0; i < 8; ++i) image.rgba.insert(image.rgba.end(), {255, 255, 255, uint8_t(i < 4 ? 128 : 255)});
+    scene.images = {image};
+    Material material;
+    material.baseColorTexture.image = 0;
+    material.alphaCutoff = 0.75f;
+    scene.materials = {material, Material{}};
+    test::addTriangle(scene, {{0, 0, -2}, {1, 0, -2}, {0, 1, -2}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, 0);
+    test::addQuad(scene, {0, 0, -3}, {5, 0, 0}, {0, 5, 0}, 1);
+    const auto behind = [&](float x) { return RayScene::create(scene)->closest({x, 0.1f, 0}, {0, 0, -1})->t; };
+    EXPECT_FLOAT_EQ(behind(0.2f), 3.0f);
+    EXPECT_FLOAT_EQ(behind(0.8f), 2.0f);
+    EXPECT_FALSE(RayScene::create(scene)->occluded({0.2f, 0.1f, 0}, {0, 0, -1}, 2.5f));
+    EXPECT_TRUE(RayScene::create(scene)->occluded({0.8f, 0.1f, 0}, {0, 0, -1}, 2.5f));
+    scene.materials[0].alphaCutoff = 0.5f;
+    EXPECT_FLOAT_EQ(behind(0.2f), 2.0f);
+}
+
+TEST(RayScene, EmptySceneMisses)
+{
+    const Scene scene;
+    const auto rays = RayScene::create(scene);
+    ASSERT_TRUE(rays.ok());
+    EXPECT_FALSE(rays->closest(vec3(0.0f), {0, 0, 1}).has_value());
+}
+
+} // namespace
+} // namespace sconce
