@@ -70,7 +70,10 @@ TEST(Brdf, WhiteFurnaceNeverGainsLight)
             const double albedo = overHemisphere([&](vec3 l) { return double(evaluateBrdf(surface, kNormal, view, l).specular.x) * l.z; });
             EXPECT_LE(albedo, 1.002) << "roughness " << roughness << ", n.v " << nv;
             // Seen straight on at alpha 1 the integral of nl / (1 + nl) is closed.
-            if (roughness == 1.0f && nv == 1.0) EXPECT_NEAR(albedo, 1.0 - std::numbers::ln2, 1e-4);
+            if (roughness == 1.0f && nv == 1.0)
+            {
+                EXPECT_NEAR(albedo, 1.0 - std::numbers::ln2, 1e-4);
+            }
         }
 }
 
