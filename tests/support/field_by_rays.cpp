@@ -26,6 +26,7 @@ FieldData fieldByRays(const RayScene& rays, std::span<const glm::vec3> positions
     field.resolution = 2 * faceSize;
     field.probes.resize(positions.size());
     field.distance.assign(size_t(field.info.wordsPerProbe) * positions.size(), 0);
+    field.radiance.assign(size_t(radianceWordsPerProbe(gpu::kChartCube, faceSize)) * positions.size(), 0);
     parallelFor(6 * positions.size(), [&](size_t i)
     {
         twin::LightFieldTwin<float> text(field, {});

@@ -10,7 +10,7 @@ namespace sconce::testing_support
 {
 
 /// A light field whose cube-face distance maps are cast with Embree instead of rasterised: the same words from other means, so that the
-/// tracer is tested apart from the bake and the bake against something that is not itself. Radiance and irradiance stay empty.
+/// tracer is tested apart from the bake and the bake against something that is not itself. Radiance is black, irradiance empty.
 /// @param positions world, metres
 FieldData fieldByRays(const RayScene& scene, std::span<const glm::vec3> positions, uint32_t faceSize, const OctreeSettings& octree = {});
 

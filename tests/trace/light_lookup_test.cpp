@@ -25,7 +25,7 @@ LitBox uniformBox(float radiance)
     LitBox box;
     MeshBuilder mesh(box.scene);
     mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
-    const RayScene rays = *RayScene::create(box.scene);
+    const RayScene rays = std::move(*RayScene::create(box.scene));
     const std::vector<vec3> probes = {{0.3f, 0.2f, -0.1f}, {-0.4f, -0.3f, 0.2f}, {0.1f, -0.5f, -0.5f}};
     box.field = testing_support::fieldByRays(rays, probes, 32);
     twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
