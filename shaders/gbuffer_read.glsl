@@ -1,0 +1,35 @@
+// A host's G-buffer as the passes read it.
+#include "shared/frame.h"
+#include "shared/brdf.h"
+
+layout(set = 1, binding = 0) uniform texture2D gDepth;           // r: reversed depth; 0 is the sky
+layout(set = 1, binding = 1) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness
+layout(set = 1, binding = 2) uniform texture2D gBaseColorMetallic; // rgb linear, a metallic
+layout(scalar, set = 1, binding = 3) readonly buffer SconceFrame { FrameView frame; };
+
+struct Pixel
+{
+    bool surface;
+    vec3 position; // world, metres
+    vec3 normal;   // on the viewer's side
+    vec3 view;     // unit, towards the eye
+    BrdfSurface brdf;
+};
+
+Pixel readPixel(ivec2 at)
+{
+    Pixel p;
+    float depth = texelFetch(gDepth, at, 0).r;
+    p.surface = depth > 0.0;
+    vec2 ndc = (vec2(at) + 0.5) / vec2(frame.size) * 2.0 - 1.0;
+    vec4 world = frame.worldFromClip * vec4(ndc, depth, 1.0);
+    p.position = world.xyz / world.w;
+    vec4 normal = texelFetch(gNormalRoughness, at, 0);
+    vec4 base = texelFetch(gBaseColorMetallic, at, 0);
+    p.view = normalize(frame.eye - p.position);
+    p.normal = normal.xyz;
+    p.brdf.baseColor = base.rgb;
+    p.brdf.metallic = base.a;
+    p.brdf.roughness = normal.w;
+    return p;
+}
