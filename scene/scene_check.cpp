@@ -1,0 +1,203 @@
+#include "scene/scene_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace sconce
+{
+
+namespace
+{
+
+std::string count(uint64_t n, const char* one, const char* many)
+{
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+std::string percent(double share)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
+    return text;
+}
+
+// For every vertex the first vertex with the same position, bit by bit but -0 and 0 alike: meshes repeat positions for their normals.
+std::vector<uint32_t> weld(const std::vector<vec3>& positions)
+{
+    std::vector<uint32_t> order(positions.size()), first(positions.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = uint32_t(i);
+    const auto key = [&](uint32_t i) { return std::array<float, 3>{positions[i].x, positions[i].y, positions[i].z}; };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    for (size_t i = 0; i < order.size(); ++i)
+        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+    return first;
+}
+
+// Edges with one triangle only, and triangles that lie on another one, whichever way either faces.
+void checkTopology(const Scene& scene, SceneReport& report)
+{
+    const std::vector<uint32_t> welded = weld(scene.positions);
+    std::vector<uint64_t> edges;
+    std::vector<std::array<uint32_t, 3>> faces;
+    edges.reserve(scene.triangles.size() * 3);
+    faces.reserve(scene.triangles.size());
+    for (const uvec3 t : scene.triangles)
+    {
+        std::array<uint32_t, 3> corner{welded[t.x], welded[t.y], welded[t.z]};
+        std::sort(corner.begin(), corner.end());
+        if (corner[0] == corner[1] || corner[1] == corner[2]) continue; // has collapsed, and is counted as degenerate
+        faces.push_back(corner);
+        for (const auto& [a, b] : {std::pair{corner[0], corner[1]}, {corner[1], corner[2]}, {corner[0], corner[2]}})
+            edges.push_back(uint64_t(a) << 32 | b);
+    }
+    std::sort(edges.begin(), edges.end());
+    for (size_t i = 0; i < edges.size();)
+    {
+        size_t end = i;
+        while (end < edges.size() && edges[end] == edges[i]) ++end;
+        ++report.edges;
+        report.openEdges += end - i == 1;
+        i = end;
+    }
+    report.openEdgeShare = report.edges ? double(report.openEdges) / double(report.edges) : 0.0;
+    std::sort(faces.begin(), faces.end());
+    report.duplicateTriangles = uint64_t(faces.end() - std::unique(faces.begin(), faces.end()));
+}
+
+float smoothest(const Scene& scene, const Material& material)
+{
+    if (material.metallicRoughnessTexture.image < 0) return material.roughness;
+    const Image& image = scene.images[size_t(material.metallicRoughnessTexture.image)];
+    uint8_t low = 255;
+    for (size_t i = 1; i < image.rgba.size(); i += 4) low = std::min(low, image.rgba[i]);
+    return material.roughness * float(low) / 255.0f;
+}
+
+void countMaterials(const Scene& scene, SceneReport& report)
+{
+    std::vector<bool> used(scene.materials.size(), false);
+    for (const uint32_t material : scene.triangleMaterial) used[material] = true;
+    for (size_t i = 0; i < used.size(); ++i)
+    {
+        if (!used[i]) continue;
+        const Material& material = scene.materials[i];
+        const float roughness = smoothest(scene, material);
+        ++report.usedMaterials;
+        report.glossyMaterials += roughness < kGlossyBelow;
+        report.mirrorMaterials += roughness < kMirrorBelow;
+        report.metalMaterials += material.metallic >= 0.5f;
+        report.maskedMaterials += material.alphaCutoff > 0.0f;
+        report.doubleSidedMaterials += material.doubleSided;
+    }
+}
+
+void measureTriangles(const Scene& scene, SceneReport& report)
+{
+    for (size_t i = 0; i < scene.triangles.size(); ++i)
+    {
+        const uvec3 t = scene.triangles[i];
+        const glm::dvec3 a(scene.positions[t.x]), b(scene.positions[t.y]), c(scene.positions[t.z]);
+        const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
+        report.area += area;
+        report.degenerateTriangles += !(area > 0.0);
+        if (scene.materials[scene.triangleMaterial[i]].emission == vec3(0.0f)) continue;
+        ++report.emissiveTriangles;
+        report.emissiveArea += area;
+    }
+}
+
+void addFindings(const Scene& scene, SceneReport& report)
+{
+    const auto find = [&](const char* code, Severity severity, std::string sentence) {
+        report.findings.push_back({code, severity, std::move(sentence)});
+    };
+    if (report.triangles == 0) find("empty", Severity::error, "The scene has no triangles; add a mesh or choose another file.");
+    const bool lit = !scene.lights.empty() || report.emissiveTriangles > 0 || scene.sky != vec3(0.0f);
+    if (!lit)
+        find("no-light", Severity::warning, "The scene has no light, emitter or sky; add one, or let the default sun and sky be added.");
+    if (report.degenerateTriangles > 0)
+        find("degenerate", Severity::warning,
+             count(report.degenerateTriangles, "triangle has", "triangles have") + " no area; remove them in the modeller.");
+    if (report.duplicateTriangles > 0)
+        find("duplicates", Severity::warning,
+             count(report.duplicateTriangles, "triangle lies", "triangles lie") +
+                 " exactly on another one, which flickers where their materials differ; remove one of each pair.");
+    if (report.openEdges > 0)
+        find("open-edges", report.openEdgeShare > 0.25 ? Severity::warning : Severity::info,
+             percent(report.openEdgeShare) + " of the edges have one triangle only, so inside and outside can't be told everywhere; "
+                                             "close the meshes, or name inner points when placing probes.");
+    if (report.triangles > 0 && report.bounds.diagonal() < 0.05f)
+        find("tiny", Severity::warning, "The scene is less than 5 cm across; glTF is in metres, check the export scale.");
+    if (report.bounds.diagonal() > 5000.0f)
+        find("huge", Severity::warning,
+             "The scene is more than 5 km across; check the export scale, or cut far ground away, for it takes probes.");
+    if (!report.bounds.empty() && glm::length(report.bounds.centre()) > 100.0f * report.bounds.diagonal())
+        find("far-from-origin", Severity::warning,
+             "The scene lies far from the origin for its size, which costs precision; move it there.");
+    if (scene.cameras.empty()) find("no-camera", Severity::info, "The scene has no camera; give one with --eye and --target.");
+    for (const std::string& warning : scene.warnings) find("import", Severity::info, warning);
+}
+
+void addEffects(const Scene& scene, SceneReport& report)
+{
+    const auto add = [&](const char* name, bool called, std::string yes, std::string no) {
+        report.effects.push_back({name, called, called ? yes : no});
+    };
+    const uint64_t punctual = report.pointLights + report.spotLights;
+    add("sun", report.directionalLights > 0, count(report.directionalLights, "directional light shines.", "directional lights shine."),
+        "There is no directional light.");
+    add("punctual", punctual > 0, count(punctual, "point or spot light shines.", "point and spot lights shine."),
+        "There is no point or spot light.");
+    add("emitters", report.emissiveTriangles > 0, count(report.emissiveTriangles, "triangle emits light.", "triangles emit light."),
+        "No triangle emits light.");
+    add("sky", scene.sky != vec3(0.0f), "The sky has radiance.", "The sky is black.");
+    uint64_t diffuse = 0;
+    for (const uint32_t material : scene.triangleMaterial)
+        diffuse += scene.materials[material].metallic < 1.0f && vec3(scene.materials[material].baseColor) != vec3(0.0f);
+    add("diffuse", diffuse > 0, count(diffuse, "triangle reflects", "triangles reflect") + " diffusely.",
+        "No triangle reflects diffusely.");
+    add("glossy", report.glossyMaterials > report.mirrorMaterials,
+        count(report.glossyMaterials - report.mirrorMaterials, "material has", "materials have") + " a roughness from 0.02 to 0.4.",
+        "No material has a roughness from 0.02 to 0.4.");
+    add("mirror", report.mirrorMaterials > 0, count(report.mirrorMaterials, "material has", "materials have") + " a roughness below 0.02.",
+        "No material has a roughness below 0.02.");
+    add("masked", report.maskedMaterials > 0, count(report.maskedMaterials, "material is", "materials are") + " cut out by alpha.",
+        "No material is cut out by alpha.");
+    add("thin-two-sided", report.openEdges > 0,
+        count(report.openEdges, "edge borders", "edges border") + " on one triangle only: sheets seen from both sides.",
+        "Every edge has two triangles or more: all meshes are closed.");
+}
+
+} // namespace
+
+SceneReport checkScene(const Scene& scene)
+{
+    SceneReport report;
+    report.triangles = scene.triangles.size();
+    report.vertices = scene.positions.size();
+    report.materials = scene.materials.size();
+    report.textures = scene.images.size();
+    report.cameras = scene.cameras.size();
+    for (const Image& image : scene.images) report.textureBytes += image.rgba.size();
+    for (const Light& light : scene.lights)
+        ++(light.type == LightType::directional ? report.directionalLights
+           : light.type == LightType::point     ? report.pointLights
+                                                : report.spotLights);
+    if (std::string fault = validate(scene); !fault.empty())
+    {
+        report.findings.push_back({"invalid", Severity::error, std::move(fault)});
+        return report;
+    }
+    report.bounds = scene.bounds();
+    countMaterials(scene, report);
+    measureTriangles(scene, report);
+    checkTopology(scene, report);
+    addFindings(scene, report);
+    addEffects(scene, report);
+    return report;
+}
+
+} // namespace sconce
