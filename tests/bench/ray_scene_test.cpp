@@ -48,6 +48,9 @@ TEST(RayScene, AlphaBelowTheCutoffIsNotThere)
     EXPECT_TRUE(RayScene::create(scene)->occluded({0.8f, 0.1f, 0}, {0, 0, -1}, 2.5f));
     scene.materials[0].alphaCutoff = 0.5f;
     EXPECT_FLOAT_EQ(behind(0.2f), 2.0f);
+    scene.materials[0].baseColorTexture.image = -1;
+    scene.materials[0].baseColor.a = 0.5f; // equal to the cutoff: there
+    EXPECT_FLOAT_EQ(behind(0.2f), 2.0f);
 }
 
 TEST(RayScene, EmptySceneMisses)
