@@ -12,7 +12,10 @@ namespace
 
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize(16) << 20;
 
-bool isDepth(VkFormat format) { return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D32_SFLOAT; }
+bool isDepth(VkFormat format)
+{
+    return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D32_SFLOAT;
+}
 
 } // namespace
 
@@ -65,14 +68,18 @@ GpuImage::~GpuImage()
     gpu->memory().release(piece);
 }
 
-VkImageAspectFlags GpuImage::aspect() const { return isDepth(made.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT; }
+VkImageAspectFlags GpuImage::aspect() const
+{
+    return isDepth(made.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
 
 Error Gpu::failure(const char* call, VkResult result) const
 {
     const bool memoryLost = result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
-    return {memoryLost ? ErrorCode::outOfMemory : ErrorCode::deviceFailure,
-            std::string(call) + " failed on " + properties.deviceName + " with VkResult " + std::to_string(result) +
-                (memoryLost ? "; free memory or lower the resolution" : "; check the driver, and run with SCONCE_VALIDATION=1 for the cause")};
+    return {
+        memoryLost ? ErrorCode::outOfMemory : ErrorCode::deviceFailure,
+        std::string(call) + " failed on " + properties.deviceName + " with VkResult " + std::to_string(result) +
+            (memoryLost ? "; free memory or lower the resolution" : "; check the driver, and run with SCONCE_VALIDATION=1 for the cause")};
 }
 
 Result<std::unique_ptr<Gpu>> Gpu::create(const HostVulkan& host)
@@ -89,7 +96,8 @@ Result<std::unique_ptr<Gpu>> Gpu::create(const HostVulkan& host)
 #undef SCONCE_LOAD
     if (absent) return Error{ErrorCode::missingFeature, std::string("The host's device has no ") + absent + "; create it for Vulkan 1.3"};
     const auto instanceProc = [&](const char* name) { return host.getInstanceProcAddr(host.instance, name); };
-    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instanceProc("vkGetPhysicalDeviceProperties"))(host.physicalDevice, &gpu->properties);
+    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instanceProc("vkGetPhysicalDeviceProperties"))(host.physicalDevice,
+                                                                                                       &gpu->properties);
     uint32_t familyCount = 0;
     const auto families =
         reinterpret_cast<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(instanceProc("vkGetPhysicalDeviceQueueFamilyProperties"));
@@ -164,8 +172,8 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     if (std::max({desc.width, desc.height, desc.depth}) > side || desc.layers > limits.maxImageArrayLayers)
         return Error{ErrorCode::missingFeature, std::string(what) + " needs an image of " + std::to_string(desc.width) + " x " +
                                                     std::to_string(desc.height) + " x " + std::to_string(desc.depth) + " texels and " +
-                                                    std::to_string(desc.layers) + " layers; the device allows " + std::to_string(side) + " and " +
-                                                    std::to_string(limits.maxImageArrayLayers) + "; lower the resolution"};
+                                                    std::to_string(desc.layers) + " layers; the device allows " + std::to_string(side) +
+                                                    " and " + std::to_string(limits.maxImageArrayLayers) + "; lower the resolution"};
     GpuImage made;
     made.gpu = this;
     made.made = desc;
@@ -183,9 +191,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     if (!(desc.usage & viewable)) return made;
     VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     view.image = made.image;
-    view.viewType = volume                           ? VK_IMAGE_VIEW_TYPE_3D
-                    : desc.array || desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
-                                                    : VK_IMAGE_VIEW_TYPE_2D;
+    view.viewType = volume ? VK_IMAGE_VIEW_TYPE_3D : desc.array || desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = desc.format;
     view.subresourceRange = {made.aspect(), 0, desc.mips, 0, desc.layers};
     result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, &made.wholeView);

@@ -102,8 +102,7 @@ public:
     /// Copies through a staging buffer of at most 16 MiB, which stays for the next copy.
     Status upload(const Buffer& target, VkDeviceSize offset, std::span<const std::byte> bytes);
     Status download(const Buffer& source, VkDeviceSize offset, std::span<std::byte> bytes);
-    template <class T>
-    Result<Buffer> makeBufferWith(std::span<const T> values, VkBufferUsageFlags extraUsage, const char* what)
+    template <class T> Result<Buffer> makeBufferWith(std::span<const T> values, VkBufferUsageFlags extraUsage, const char* what)
     {
         auto buffer = makeBuffer(std::max<size_t>(values.size_bytes(), 16), extraUsage, MemoryUse::device, what);
         if (!buffer) return buffer.error();

@@ -13,7 +13,10 @@ namespace
 constexpr VkDeviceSize kBlockBytes = VkDeviceSize(64) << 20;
 constexpr VkDeviceSize kLargeBytes = kBlockBytes / 4; // from here on a resource gets a block of its own
 
-std::string mebibytes(uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }
+std::string mebibytes(uint64_t bytes)
+{
+    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
 
 } // namespace
 
@@ -66,8 +69,14 @@ struct GpuMemory::Block
     bool empty() const { return free.size() == 1 && free[0].size == size; }
 };
 
-VkDeviceMemory GpuMemory::Piece::memory() const { return block->memory; }
-std::byte* GpuMemory::Piece::mapped() const { return block->mapped ? block->mapped + offset : nullptr; }
+VkDeviceMemory GpuMemory::Piece::memory() const
+{
+    return block->memory;
+}
+std::byte* GpuMemory::Piece::mapped() const
+{
+    return block->mapped ? block->mapped + offset : nullptr;
+}
 
 GpuMemory::GpuMemory(const HostVulkan& hostVulkan, const VulkanFunctions& functions) : host(hostVulkan), vk(functions)
 {
@@ -80,7 +89,10 @@ GpuMemory::GpuMemory(const HostVulkan& hostVulkan, const VulkanFunctions& functi
                 budgetBytes = std::max<uint64_t>(budgetBytes, types.memoryHeaps[i].size / 5 * 4);
 }
 
-GpuMemory::~GpuMemory() { assert(blocks.empty() && "a buffer or an image outlives its Gpu"); }
+GpuMemory::~GpuMemory()
+{
+    assert(blocks.empty() && "a buffer or an image outlives its Gpu");
+}
 
 int GpuMemory::memoryType(uint32_t allowed, MemoryUse use) const
 {
@@ -100,12 +112,13 @@ int GpuMemory::memoryType(uint32_t allowed, MemoryUse use) const
     return fallback;
 }
 
-Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, bool linear, bool mapped, VkDeviceSize asked, const char* what)
+Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, bool linear, bool mapped, VkDeviceSize asked,
+                                              const char* what)
 {
     const auto refused = [&](const char* by)
     {
-        return Error{ErrorCode::outOfMemory, std::string(what) + " needs " + mebibytes(asked) + " of device memory; " + mebibytes(heldBytes) +
-                                                 " of " + mebibytes(budgetBytes) + " are in use and " + by +
+        return Error{ErrorCode::outOfMemory, std::string(what) + " needs " + mebibytes(asked) + " of device memory; " +
+                                                 mebibytes(heldBytes) + " of " + mebibytes(budgetBytes) + " are in use and " + by +
                                                  " refused more; lower the resolution or raise the memory budget"};
     };
     if (heldBytes + size > budgetBytes) return refused("the budget");
@@ -144,7 +157,8 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
 Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear, const char* what)
 {
     const int type = memoryType(needs.memoryTypeBits, use);
-    if (type < 0) return Error{ErrorCode::missingFeature, std::string("The device has no memory type for ") + what + "; choose another device"};
+    if (type < 0)
+        return Error{ErrorCode::missingFeature, std::string("The device has no memory type for ") + what + "; choose another device"};
     const bool mapped = use != MemoryUse::device;
     if (needs.size < kLargeBytes)
     {
@@ -167,8 +181,10 @@ void GpuMemory::release(Piece& piece)
     if (piece.block->empty())
     {
         heldBytes -= piece.block->size;
-        if (host.freeMemory) host.freeMemory(piece.block->memory);
-        else vk.FreeMemory(host.device, piece.block->memory, host.allocationCallbacks);
+        if (host.freeMemory)
+            host.freeMemory(piece.block->memory);
+        else
+            vk.FreeMemory(host.device, piece.block->memory, host.allocationCallbacks);
         blocks.remove_if([&](const Block& block) { return &block == piece.block; });
     }
     piece = {};

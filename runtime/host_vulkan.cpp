@@ -16,8 +16,7 @@ namespace
 
 constexpr uint32_t kApiVersion = VK_API_VERSION_1_3;
 
-template <class F>
-F load(VkInstance instance, const char* name)
+template <class F> F load(VkInstance instance, const char* name)
 {
     return reinterpret_cast<F>(vkGetInstanceProcAddr(instance, name));
 }
@@ -67,11 +66,16 @@ const char* kindName(VkPhysicalDeviceType type)
 {
     switch (type)
     {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "software";
-    default: return "other";
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return "software";
+    default:
+        return "other";
     }
 }
 
@@ -79,11 +83,16 @@ int preference(VkPhysicalDeviceType type)
 {
     switch (type)
     {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 4;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 3;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 1;
-    default: return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return 1;
+    default:
+        return 0;
     }
 }
 
@@ -119,8 +128,8 @@ VkPhysicalDeviceProperties propertiesOf(VkInstance instance, VkPhysicalDevice de
 /// The first queue family with graphics and compute, or -1.
 int usableFamily(PFN_vkGetInstanceProcAddr getProc, VkInstance instance, VkPhysicalDevice device, bool& timestamps)
 {
-    auto query = reinterpret_cast<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(
-        getProc(instance, "vkGetPhysicalDeviceQueueFamilyProperties"));
+    auto query =
+        reinterpret_cast<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(getProc(instance, "vkGetPhysicalDeviceQueueFamilyProperties"));
     uint32_t count = 0;
     query(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
@@ -164,8 +173,9 @@ Result<VkInstance> makeInstance(bool validation, MessageLog* log)
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult result = load<PFN_vkCreateInstance>(nullptr, "vkCreateInstance")(&info, nullptr, &instance);
     if (result == VK_ERROR_LAYER_NOT_PRESENT)
-        return Error{ErrorCode::missingFeature, "The layer VK_LAYER_KHRONOS_validation is not installed; install the Vulkan validation layers or "
-                                                "run without validation"};
+        return Error{ErrorCode::missingFeature,
+                     "The layer VK_LAYER_KHRONOS_validation is not installed; install the Vulkan validation layers or "
+                     "run without validation"};
     if (result != VK_SUCCESS) return vulkanError("vkCreateInstance", result, "check that a Vulkan driver is installed");
     return instance;
 }
@@ -173,7 +183,8 @@ Result<VkInstance> makeInstance(bool validation, MessageLog* log)
 Result<VkPhysicalDevice> chooseDevice(VkInstance instance, const std::string& wanted)
 {
     const std::vector<VkPhysicalDevice> devices = devicesOf(instance);
-    if (devices.empty()) return Error{ErrorCode::missingFeature, "No Vulkan device was found; install a Vulkan driver (Mesa has a software one)"};
+    if (devices.empty())
+        return Error{ErrorCode::missingFeature, "No Vulkan device was found; install a Vulkan driver (Mesa has a software one)"};
     size_t index = 0;
     const auto [end, fault] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
     const bool isIndex = !wanted.empty() && fault == std::errc() && end == wanted.data() + wanted.size();
@@ -234,9 +245,18 @@ OwnDevice::OwnDevice(std::unique_ptr<State> made) : state(std::move(made)) {}
 OwnDevice::OwnDevice(OwnDevice&&) noexcept = default;
 OwnDevice& OwnDevice::operator=(OwnDevice&&) noexcept = default;
 OwnDevice::~OwnDevice() = default;
-const HostVulkan& OwnDevice::host() const { return state->host; }
-bool OwnDevice::validating() const { return state->validation; }
-std::string OwnDevice::name() const { return propertiesOf(state->host.instance, state->host.physicalDevice).deviceName; }
+const HostVulkan& OwnDevice::host() const
+{
+    return state->host;
+}
+bool OwnDevice::validating() const
+{
+    return state->validation;
+}
+std::string OwnDevice::name() const
+{
+    return propertiesOf(state->host.instance, state->host.physicalDevice).deviceName;
+}
 
 std::vector<std::string> OwnDevice::validationMessages() const
 {
@@ -244,7 +264,10 @@ std::vector<std::string> OwnDevice::validationMessages() const
     return state->log.messages;
 }
 
-Result<OwnDevice> OwnDevice::create() { return create(Desc{}); }
+Result<OwnDevice> OwnDevice::create()
+{
+    return create(Desc{});
+}
 
 Result<OwnDevice> OwnDevice::create(const Desc& desc)
 {
@@ -275,8 +298,8 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
     {
         std::string list;
         for (const std::string& name : missing) list += (list.empty() ? "" : ", ") + name;
-        return Error{ErrorCode::missingFeature, std::string("The device ") + propertiesOf(host.instance, *chosen).deviceName + " lacks " + list +
-                                                    "; update its driver or choose another device"};
+        return Error{ErrorCode::missingFeature, std::string("The device ") + propertiesOf(host.instance, *chosen).deviceName + " lacks " +
+                                                    list + "; update its driver or choose another device"};
     }
     bool timestamps = false;
     host.queueFamily = uint32_t(usableFamily(vkGetInstanceProcAddr, host.instance, *chosen, timestamps));

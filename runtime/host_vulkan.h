@@ -14,7 +14,8 @@ namespace sconce
 {
 
 /// What a host lends: its own Vulkan objects, which must outlive everything made from them. The device needs Vulkan 1.3 with the features
-/// that missingFeatures() checks, enabled; the queue family needs graphics and compute. Calls on one HostVulkan are the host's to serialise.
+/// that missingFeatures() checks, enabled; the queue family needs graphics and compute. Calls on one HostVulkan are the host's to
+/// serialise.
 struct HostVulkan
 {
     VkInstance instance = VK_NULL_HANDLE;
@@ -70,8 +71,8 @@ struct DeviceSummary
     std::string kind;   // discrete, integrated, virtual, software, other
     std::string driver; // name and version
     std::string apiVersion;
-    uint64_t heapBytes = 0;        // largest device-local heap
-    uint32_t maxImageSize2D = 0;   // texels
+    uint64_t heapBytes = 0;      // largest device-local heap
+    uint32_t maxImageSize2D = 0; // texels
     uint32_t maxImageLayers = 0;
     uint64_t maxStorageBuffer = 0; // bytes
     uint32_t subgroupSize = 0;

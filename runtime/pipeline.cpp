@@ -259,8 +259,7 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
 void Pipeline::bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets) const
 {
     gpu->vk.CmdBindPipeline(cmd, bindPoint, pipeline);
-    if (!sets.empty())
-        gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, pipelineLayout, 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
+    if (!sets.empty()) gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, pipelineLayout, 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
 }
 
 Sampler& Sampler::operator=(Sampler&& other) noexcept

@@ -74,8 +74,7 @@ public:
     explicit operator bool() const { return pipeline != VK_NULL_HANDLE; }
 
     void bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets = {}) const;
-    template <class T>
-    void push(VkCommandBuffer cmd, const T& values) const
+    template <class T> void push(VkCommandBuffer cmd, const T& values) const
     {
         static_assert(sizeof(T) % 4 == 0 && sizeof(T) <= 128, "push constants are at most 128 bytes everywhere");
         gpu->vk.CmdPushConstants(cmd, pipelineLayout, stages, 0, sizeof(T), &values);
