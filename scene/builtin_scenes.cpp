@@ -105,7 +105,7 @@ Scene makeTemple()
     mesh.box({-7.6f, beam + 0.7f, -11.6f}, {7.6f, beam + 0.95f, 11.6f}, stone);
     const mat4 before = mesh.place; // the ridge runs along z
     mesh.place = mat4(vec4(0, 0, -1, 0), vec4(0, 1, 0, 0), vec4(1, 0, 0, 0), vec4(0, 0, 0, 1));
-    mesh.gable({-11.6f, beam + 0.95f, -7.6f}, {11.6f, beam + 3.4f, 7.6f}, roof, stone);
+    mesh.gable({-11.5f, beam + 0.95f, -7.5f}, {11.5f, beam + 3.4f, 7.5f}, roof, stone);
     mesh.place = before;
 
     mesh.box({-1.1f, top, -6.2f}, {1.1f, top + 0.9f, -4.2f}, tileDark);
