@@ -41,7 +41,8 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
     if (std::max({size.x, size.y, size.z}) > gpu.properties.limits.maxImageDimension3D)
         return Error{ErrorCode::missingFeature, "the octree needs a 3D texture of " + std::to_string(std::max({size.x, size.y, size.z})) +
                                                     " texels a side and the device allows " +
-                                                    std::to_string(gpu.properties.limits.maxImageDimension3D) + "; build it with fewer voxels"};
+                                                    std::to_string(gpu.properties.limits.maxImageDimension3D) +
+                                                    "; build it with fewer voxels"};
     const bool narrow = octree.marker == 255;
     ImageDesc desc;
     desc.format = narrow ? VK_FORMAT_R8G8B8A8_UINT : VK_FORMAT_R16G16B16A16_UINT;
@@ -53,23 +54,26 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
     auto image = gpu.makeImage(desc, "octree");
     if (!image) return image.error();
     std::vector<uint8_t> bytes(octree.bytes());
-    if (narrow) std::transform(octree.texels.begin(), octree.texels.end(), bytes.begin(), [](uint16_t v) { return uint8_t(v); });
-    else std::memcpy(bytes.data(), octree.texels.data(), bytes.size());
+    if (narrow)
+        std::transform(octree.texels.begin(), octree.texels.end(), bytes.begin(), [](uint16_t v) { return uint8_t(v); });
+    else
+        std::memcpy(bytes.data(), octree.texels.data(), bytes.size());
     auto staging = gpu.makeBufferWith<uint8_t>(bytes, 0, "octree staging");
     if (!staging) return staging.error();
-    auto status = gpu.submit([&](VkCommandBuffer cmd)
-    {
-        transition(gpu, cmd, *image,
-                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_COPY_BIT, 0,
-                    VK_ACCESS_2_TRANSFER_WRITE_BIT});
-        VkBufferImageCopy copy{};
-        copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        copy.imageExtent = {size.x, size.y, size.z};
-        gpu.vk.CmdCopyBufferToImage(cmd, staging->handle(), image->handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-        transition(gpu, cmd, *image,
-                   {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
-                    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
-    });
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            transition(gpu, cmd, *image,
+                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
+                        VK_PIPELINE_STAGE_2_COPY_BIT, 0, VK_ACCESS_2_TRANSFER_WRITE_BIT});
+            VkBufferImageCopy copy{};
+            copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            copy.imageExtent = {size.x, size.y, size.z};
+            gpu.vk.CmdCopyBufferToImage(cmd, staging->handle(), image->handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+            transition(gpu, cmd, *image,
+                       {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+        });
     if (!status) return status.error();
     return image;
 }
@@ -110,8 +114,8 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     made.octree = std::move(*octree);
     made.bytes += made.probes.size() + made.block.size() + field.octree.bytes();
 
-    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                               {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+    const DescriptorSet::Binding bindings[] = {
+        {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
@@ -153,8 +157,8 @@ void RayTracer::record(VkCommandBuffer cmd, const Buffer& rays, const Buffer& hi
     pipeline.bind(cmd, sets);
     pipeline.push(cmd, count);
     gpu->vk.CmdDispatch(cmd, (count + 63) / 64, 1, 1);
-    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                  VK_ACCESS_2_MEMORY_READ_BIT);
+    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
 }
 
 Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds)
@@ -174,13 +178,14 @@ Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> h
     {
         const size_t count = std::min(piece, rays.size() - first);
         if (auto status = gpu->upload(*rayBuffer, 0, std::as_bytes(rays.subspan(first, count))); !status) return status;
-        auto status = gpu->submit([&](VkCommandBuffer cmd)
-        {
-            timer->reset(cmd);
-            timer->begin(cmd, "trace");
-            record(cmd, *rayBuffer, *hitBuffer, uint32_t(count));
-            timer->end(cmd);
-        });
+        auto status = gpu->submit(
+            [&](VkCommandBuffer cmd)
+            {
+                timer->reset(cmd);
+                timer->begin(cmd, "trace");
+                record(cmd, *rayBuffer, *hitBuffer, uint32_t(count));
+                timer->end(cmd);
+            });
         if (!status) return status;
         if (milliseconds)
             for (const GpuTimer::Scope& scope : timer->read()) *milliseconds += scope.milliseconds;

@@ -15,8 +15,7 @@ using namespace glm; // the shared text calls GLSL's functions by their plain na
 
 /// The shaders' own text, run on the CPU in float or double: the oracle of the GPU, and what tests and tools trace with.
 /// Refers to the field: keep that alive. Safe from many threads.
-template <class Real>
-struct LightFieldTwin
+template <class Real> struct LightFieldTwin
 {
     using real = Real;
     using uint = std::uint32_t;
@@ -33,7 +32,9 @@ struct LightFieldTwin
     static constexpr int kRanked = gpu::kRanked;
     static constexpr uint kLowFactor = gpu::kLowFactor;
 
-    explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data) {}
+    explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data)
+    {
+    }
 
 #include "shaders/shared/texel.h"
 
@@ -45,10 +46,22 @@ struct LightFieldTwin
     TraceQuality quality;
     const FieldData& source;
 
-    const ProbeHeader& probeHeader(uint probe) const { return source.probes[probe]; }
-    uint distanceWord(uint index) const { return source.distance[index]; }
-    uint radianceWord(uint index) const { return source.radiance[index]; }
-    uint irradianceWord(uint index) const { return source.irradiance[index]; }
+    const ProbeHeader& probeHeader(uint probe) const
+    {
+        return source.probes[probe];
+    }
+    uint distanceWord(uint index) const
+    {
+        return source.distance[index];
+    }
+    uint radianceWord(uint index) const
+    {
+        return source.radiance[index];
+    }
+    uint irradianceWord(uint index) const
+    {
+        return source.irradiance[index];
+    }
     uvec4 octreeTexel(ivec3 p) const
     {
         const glm::uvec3 size = source.octree.textureSize();

@@ -49,8 +49,8 @@ struct ProbeView
         const float q = 1.0f / f.z;
         const float x = 0.5f * float(size) * (f.x * q + 1.0f), y = 0.5f * float(size) * (f.y * q + 1.0f);
         const int ix = std::clamp(int(x), 0, size - 1), iy = std::clamp(int(y), 0, size - 1);
-        const uint32_t word = maps.distance[size_t(probe) * maps.info.wordsPerProbe + size_t(face) * (maps.info.wordsPerProbe / 6) +
-                                            size_t(iy) * size + ix];
+        const uint32_t word =
+            maps.distance[size_t(probe) * maps.info.wordsPerProbe + size_t(face) * (maps.info.wordsPerProbe / 6) + size_t(iy) * size + ix];
         const float centre = text.halfToReal(word);
         if (centre == 0.0f) return true;
         const float plane = centre * (1.0f + text.unpackGradient(word >> 16) * (x - float(ix) - 0.5f) +
@@ -290,10 +290,11 @@ Result<Octree> buildOctree(const ProbeMaps& maps, const OctreeSettings& settings
 {
     if (maps.probes.empty()) return Error{ErrorCode::badArgument, "an octree needs at least one probe; place some first"};
     if (maps.probes.size() > 65535)
-        return Error{ErrorCode::badArgument, std::to_string(maps.probes.size()) + " probes are more than the 65535 an octree can index; place fewer"};
+        return Error{ErrorCode::badArgument,
+                     std::to_string(maps.probes.size()) + " probes are more than the 65535 an octree can index; place fewer"};
     if (settings.voxels < 8 || settings.voxels > 1024 || settings.topShift < 1 || settings.topShift > 6)
-        return Error{ErrorCode::badArgument, "octree settings: voxels " + std::to_string(settings.voxels) + " must be 8..1024 and topShift " +
-                                                 std::to_string(settings.topShift) + " 1..6"};
+        return Error{ErrorCode::badArgument, "octree settings: voxels " + std::to_string(settings.voxels) +
+                                                 " must be 8..1024 and topShift " + std::to_string(settings.topShift) + " 1..6"};
     if (maps.info.chart != gpu::kChartCube)
         return Error{ErrorCode::badArgument, "the octree judges visibility by cube-face maps; bake with the cube chart"};
 
@@ -312,7 +313,8 @@ Result<Octree> buildOctree(const ProbeMaps& maps, const OctreeSettings& settings
     const size_t columns = size_t(tree.topCells.x) * tree.topCells.y;
     for (int z = 0; z < tree.topCells.z; ++z)
     {
-        if (!report(progress, "octree", double(z) / tree.topCells.z)) return Error{ErrorCode::cancelled, "cancelled while building the octree"};
+        if (!report(progress, "octree", double(z) / tree.topCells.z))
+            return Error{ErrorCode::cancelled, "cancelled while building the octree"};
         parallelFor(columns, [&](size_t i) { rankCell(maps, tree, ivec3(int(i % tree.topCells.x), int(i / tree.topCells.x), z), grid); });
     }
     fillUnseen(grid);

@@ -13,8 +13,8 @@ namespace sconce
 
 struct OctreeSettings
 {
-    int voxels = 128;  // finest voxels along the longest side of the bounds, 8..1024; time and memory grow with the square of it
-    int topShift = 3;  // levels below the top grid, 1..6
+    int voxels = 128; // finest voxels along the longest side of the bounds, 8..1024; time and memory grow with the square of it
+    int topShift = 3; // levels below the top grid, 1..6
 };
 
 /// The probes' cube-face distance maps, as the octree needs them. Word layout: shaders/shared/light_field.h.

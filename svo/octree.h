@@ -15,13 +15,13 @@ namespace sconce
 /// Leaf-only payload: Wang et al. 2019, "Fast Non-uniform Radiance Probe Placement and Tracing", section 4.1; the layout is our own.
 struct Octree
 {
-    glm::vec3 boundsLow{0.0f};  // field space
+    glm::vec3 boundsLow{0.0f}; // field space
     glm::vec3 boundsHigh{0.0f};
-    float voxel = 0.0f;         // field units per finest voxel
+    float voxel = 0.0f; // field units per finest voxel
     glm::ivec3 topCells{0};
-    int topShift = 0;           // a top cell covers 2^topShift finest voxels a side
-    glm::uvec3 bricks{0};       // bricks along each axis of the texture; the texture has 2x that many texels
-    uint32_t marker = 255;      // 255: channels are 8 bit; 65535: 16 bit
+    int topShift = 0;             // a top cell covers 2^topShift finest voxels a side
+    glm::uvec3 bricks{0};         // bricks along each axis of the texture; the texture has 2x that many texels
+    uint32_t marker = 255;        // 255: channels are 8 bit; 65535: 16 bit
     std::vector<uint16_t> texels; // [z][y][x][4]
     uint32_t leaves = 0;
     uint32_t nodes = 0; // interior texels

@@ -11,8 +11,7 @@ namespace sconce
 
 /// Calls work(i) for every i in [0, count), on all cores. Each i must write only what is its own: then the result does not depend on the
 /// number of threads.
-template <class Work>
-void parallelFor(size_t count, const Work& work)
+template <class Work> void parallelFor(size_t count, const Work& work)
 {
     const size_t threads = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), count);
     std::atomic<size_t> next{0};

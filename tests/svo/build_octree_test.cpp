@@ -43,7 +43,8 @@ FieldData dividedBox(uint32_t faceSize, int copies = 1)
         for (int face = 0; face < 6; ++face)
             for (uint32_t i = 0; i < faceSize * faceSize; ++i)
             {
-                const float u = 2.0f * (float(i % faceSize) + 0.5f) / float(faceSize) - 1.0f, v = 2.0f * (float(i / faceSize) + 0.5f) / float(faceSize) - 1.0f;
+                const float u = 2.0f * (float(i % faceSize) + 0.5f) / float(faceSize) - 1.0f,
+                            v = 2.0f * (float(i / faceSize) + 0.5f) / float(faceSize) - 1.0f;
                 const vec3 d = text.faceDirection(face, vec3(u, v, 1.0f));
                 float w = 1e9f;
                 for (int a = 0; a < 3; ++a)
@@ -56,7 +57,10 @@ FieldData dividedBox(uint32_t faceSize, int copies = 1)
     return field;
 }
 
-vec3 toField(const FieldData& field, vec3 world) { return (world - field.info.origin) / field.info.scale; }
+vec3 toField(const FieldData& field, vec3 world)
+{
+    return (world - field.info.origin) / field.info.scale;
+}
 
 TEST(BuildOctree, PointsAskTheProbeThatSeesThem)
 {
@@ -83,7 +87,8 @@ TEST(BuildOctree, EveryPointHasALeafEvenOutsideAndNotANumber)
     attachOctree(field, *buildOctree({field.info, field.probes, field.distance}, {.voxels = 16}));
     twin::LightFieldTwin<float> text(field, {});
     const float nan = std::nanf(""), inf = INFINITY;
-    for (vec3 p : {vec3(100.0f), vec3(-100.0f), vec3(nan), vec3(inf, 0, 0), vec3(-inf, nan, 3.0f), vec3(0.0f), vec3(-0.0f), vec3(1e30f, -1e30f, 0)})
+    for (vec3 p :
+         {vec3(100.0f), vec3(-100.0f), vec3(nan), vec3(inf, 0, 0), vec3(-inf, nan, 3.0f), vec3(0.0f), vec3(-0.0f), vec3(1e30f, -1e30f, 0)})
     {
         int reads = 0;
         const glm::uvec4 ranked = text.rankedProbesAt(p, reads);
@@ -135,7 +140,8 @@ TEST(BuildOctree, MoreThan255ProbesTake16Bits)
 TEST(BuildOctree, SameBytesTwice)
 {
     const FieldData field = dividedBox(64);
-    EXPECT_EQ(buildOctree({field.info, field.probes, field.distance}, {})->texels, buildOctree({field.info, field.probes, field.distance}, {})->texels);
+    EXPECT_EQ(buildOctree({field.info, field.probes, field.distance}, {})->texels,
+              buildOctree({field.info, field.probes, field.distance}, {})->texels);
 }
 
 TEST(BuildOctree, RefusesWhatItCantDoWithASentence)

@@ -63,7 +63,8 @@ TEST(LightLookup, UniformRadianceGivesThatCosineMeanWhicheverWayASurfaceFaces)
     std::uniform_real_distribution<float> across(-0.28f, 0.28f);
     for (int i = 0; i < 2000; ++i)
     {
-        const vec3 n = glm::normalize(vec3(normal(random), normal(random), normal(random))), p(across(random), across(random), across(random));
+        const vec3 n = glm::normalize(vec3(normal(random), normal(random), normal(random))),
+                   p(across(random), across(random), across(random));
         int reads = 0;
         EXPECT_NEAR(text.irradianceAt(p, n, p, reads).g, 3.0f, 0.03f);
     }

@@ -4,19 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/ray_sets.h"
 #include "runtime/tracer_cpu.h"
-#include "scene/builtin_scenes.h"
 #include "scene/mesh_builder.h"
-#include "tests/support/field_by_rays.h"
+#include "tests/trace/cornell_field.h"
 
 namespace sconce
 {
 namespace
 {
 
-using testing_support::defaultQuality;
-using testing_support::fieldByRays;
+using namespace testing_support;
 
 /// A closed box, its inside seen by one probe off its centre.
 Scene closedBox(float scale, vec3 centre = vec3(0.0f))
@@ -27,44 +24,17 @@ Scene closedBox(float scale, vec3 centre = vec3(0.0f))
     return scene;
 }
 
-struct Traced
-{
-    Scene scene;
-    RayScene rays;
-    FieldData field;
-
-    Traced(Scene made, std::vector<vec3> probes, uint32_t faceSize)
-        : scene(std::move(made)), rays(std::move(*RayScene::create(scene))), field(fieldByRays(rays, probes, faceSize))
-    {
-    }
-    vec3 toField(vec3 world) const { return (world - field.info.origin) / field.info.scale; }
-};
-
-const std::vector<vec3> kCornellProbes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f},  {0.6f, 1.2f, 0.2f},
-                                          {-0.75f, 1.0f, -0.8f}, {0.3f, 0.9f, -0.75f}, {0.0f, 0.3f, 0.85f}};
-
-Traced& cornell()
-{
-    static Traced made(*makeBuiltinScene("cornell-glossy"), kCornellProbes, 128);
-    return made;
-}
-
-RaySet cornellRays(uint32_t count)
-{
-    const std::vector<vec3> points = {{0.0f, 1.0f, 0.8f}, {0.5f, 1.6f, -0.5f}, {-0.7f, 1.5f, 0.3f}};
-    return *glossyRays(cornell().rays, cornell().scene.cameras, points, {.count = count, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = 7});
-}
-
-template <class Real>
-std::vector<TracedRay> traceAll(const Traced& traced, const RaySet& set, const gpu::TraceQuality& quality)
+template <class Real> std::vector<TracedRay> traceAll(const Traced& traced, const RaySet& set, const gpu::TraceQuality& quality)
 {
     twin::LightFieldTwin<Real> text(traced.field, quality);
     using V = glm::vec<3, Real>;
     std::vector<TracedRay> out(set.size());
     for (size_t i = 0; i < set.size(); ++i)
     {
-        const auto r = text.traceRay((V(set.origins[i]) - V(traced.field.info.origin)) / Real(traced.field.info.scale), V(set.directions[i]));
-        out[i] = {TraceStatus(r.status), float(r.t * Real(traced.field.info.scale)), uint32_t(r.handoffs), uint32_t(r.distanceReads), uint32_t(r.indexReads)};
+        const auto r =
+            text.traceRay((V(set.origins[i]) - V(traced.field.info.origin)) / Real(traced.field.info.scale), V(set.directions[i]));
+        out[i] = {TraceStatus(r.status), float(r.t * Real(traced.field.info.scale)), uint32_t(r.handoffs), uint32_t(r.distanceReads),
+                  uint32_t(r.indexReads)};
     }
     return out;
 }
@@ -77,7 +47,7 @@ vec3 randomDirection(std::mt19937& random)
 
 TEST(ProbeTrace, ClosedBoxFromOneProbeIsExact)
 {
-    Traced traced(closedBox(1.0f), {vec3(0.13f, -0.21f, 0.09f)}, 128);
+    Traced traced(closedBox(1.0f), std::vector{vec3(0.13f, -0.21f, 0.09f)}, 128);
     twin::LightFieldTwin<float> text(traced.field, defaultQuality());
     std::mt19937 random(1);
     std::uniform_real_distribution<float> across(-0.95f, 0.95f);
@@ -104,7 +74,7 @@ TEST(ProbeTrace, ClosedBoxFromOneProbeIsExact)
 TEST(ProbeTrace, RaysThroughTheProbeAndAlongAxesAndDiagonals)
 {
     const vec3 probe(0.125f, -0.25f, 0.0625f);
-    Traced traced(closedBox(1.0f), {probe}, 128);
+    Traced traced(closedBox(1.0f), std::vector{probe}, 128);
     twin::LightFieldTwin<float> text(traced.field, defaultQuality());
     for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
@@ -112,7 +82,8 @@ TEST(ProbeTrace, RaysThroughTheProbeAndAlongAxesAndDiagonals)
             {
                 if (x == 0 && y == 0 && z == 0) continue;
                 const vec3 direction = glm::normalize(vec3(x, y, z));
-                for (const vec3 origin : {probe, probe - 0.3f * direction, probe + 0.1f * direction, vec3(0.3f, 0.3f, 0.3f), probe + vec3(0.2f, 0.2f, 0.0f)})
+                for (const vec3 origin :
+                     {probe, probe - 0.3f * direction, probe + 0.1f * direction, vec3(0.3f, 0.3f, 0.3f), probe + vec3(0.2f, 0.2f, 0.0f)})
                 {
                     const auto truth = traced.rays.closest(origin, direction);
                     const auto hit = text.queryRay(origin, direction);
@@ -183,7 +154,8 @@ TEST(ProbeTrace, ScalingTheSceneByPowersOfTwoChangesNoBit)
         for (vec3& o : scaled.origins) o *= scale;
         const auto got = traceAll<float>(traced, scaled, defaultQuality());
         size_t different = 0; // Embree's own distances may differ in the last bit
-        for (size_t i = 0; i < got.size(); ++i) different += got[i].status != expected[i].status || std::abs(got[i].t - expected[i].t * scale) > 1e-4f * scale;
+        for (size_t i = 0; i < got.size(); ++i)
+            different += got[i].status != expected[i].status || std::abs(got[i].t - expected[i].t * scale) > 1e-4f * scale;
         EXPECT_LE(different, got.size() / 300) << scale;
     }
 }
@@ -191,7 +163,7 @@ TEST(ProbeTrace, ScalingTheSceneByPowersOfTwoChangesNoBit)
 TEST(ProbeTrace, WallOnTheBoundsStopsRays)
 {
     // Rays that end exactly on a wall that is the scene's border, from far away and near.
-    Traced traced(closedBox(1.0f), {vec3(0.0f)}, 64);
+    Traced traced(closedBox(1.0f), std::vector{vec3(0.0f)}, 64);
     twin::LightFieldTwin<float> text(traced.field, defaultQuality());
     std::mt19937 random(4);
     std::uniform_real_distribution<float> across(-0.5f, 0.5f);
@@ -209,7 +181,7 @@ TEST(ProbeTrace, SkyIsAMiss)
     mesh.quad({-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, mesh.material("ground", vec3(0.5f)));
     mesh.box({-1, 0, -1}, {1, 1, 1}, 0);
     scene.sky = vec3(2.0f, 3.0f, 4.0f);
-    Traced traced(std::move(scene), {vec3(2.5f, 0.6f, 0.3f), vec3(-2.5f, 0.6f, 0.3f)}, 64);
+    Traced traced(std::move(scene), std::vector{vec3(2.5f, 0.6f, 0.3f), vec3(-2.5f, 0.6f, 0.3f)}, 64);
     traced.field.info.sky = traced.scene.sky;
     twin::LightFieldTwin<float> text(traced.field, defaultQuality());
     const auto hit = text.queryRay(vec3(2.0f, 0.5f, 2.0f), glm::normalize(vec3(0.2f, 1.0f, 0.1f)));
@@ -241,7 +213,7 @@ TEST(ProbeTrace, ThinSheetIsNotPassedFromEitherSide)
     Scene scene = closedBox(1.0f);
     MeshBuilder mesh(scene);
     mesh.quad({0, -0.8f, 0.6f}, {0, -0.8f, -0.6f}, {0, 0.8f, -0.6f}, {0, 0.8f, 0.6f}, 0); // one triangle pair without thickness
-    Traced traced(std::move(scene), {vec3(-0.5f, 0.1f, 0.0f), vec3(0.5f, -0.1f, 0.1f)}, 128);
+    Traced traced(std::move(scene), std::vector{vec3(-0.5f, 0.1f, 0.0f), vec3(0.5f, -0.1f, 0.1f)}, 128);
     twin::LightFieldTwin<float> text(traced.field, defaultQuality());
     std::mt19937 random(12);
     std::uniform_real_distribution<float> along(-0.7f, 0.7f), off(1e-3f, 0.9f);

@@ -84,7 +84,8 @@ TEST(Texel, BoundsHoldEveryPointOfThePlane)
         const double q = text.d.halfToReal(word), high = text.d.halfToReal(bounds), low = text.d.halfToReal(bounds >> 16);
         for (int k = 0; k < 4; ++k)
         {
-            const double plane = q * (1.0 + text.d.unpackGradient(word >> 16) * offset(random) + text.d.unpackGradient(word >> 24) * offset(random));
+            const double plane =
+                q * (1.0 + text.d.unpackGradient(word >> 16) * offset(random) + text.d.unpackGradient(word >> 24) * offset(random));
             EXPECT_LE(plane, high);
             EXPECT_GE(plane, low);
         }
@@ -98,7 +99,8 @@ TEST(Texel, ChainHoldsEveryTexelBelow)
     std::vector<uint32_t> words(distanceWordsPerProbe(gpu::kChartCube, size) / 6);
     std::mt19937 random(4);
     std::uniform_real_distribution<float> q(0.0f, 8.0f), gradient(-0.1f, 0.1f);
-    for (uint32_t i = 0; i < size * size; ++i) words[i] = i % 17 == 0 ? 0u : text.f.packTexel(q(random), gradient(random), gradient(random));
+    for (uint32_t i = 0; i < size * size; ++i)
+        words[i] = i % 17 == 0 ? 0u : text.f.packTexel(q(random), gradient(random), gradient(random));
     buildChain(words.data(), size, coarsestLevel(size));
     uint32_t offset = size * size;
     for (uint32_t level = 2; level <= coarsestLevel(size); level += 2)

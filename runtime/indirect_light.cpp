@@ -1,0 +1,149 @@
+#include "runtime/indirect_light.h"
+
+#include "spirv/denoise_comp.h"
+#include "spirv/gather_diffuse_comp.h"
+#include "spirv/trace_glossy_comp.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+struct DenoisePush
+{
+    int radius = 3; // pixels: the glossy term varies fast (McGuire et al. 2017, section 5.1)
+    int stride = 1;
+    int followRoughness = 1;
+};
+
+} // namespace
+
+Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, bool second, uint32_t pushBytes)
+{
+    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                                    {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    if (second) bindings.push_back({5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    auto made = DescriptorSet::create(*gpu, bindings);
+    if (!made) return made.error();
+    set = std::move(*made);
+    set.write(3, frame);
+    const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
+    auto built = Pipeline::compute(*gpu, shader, layouts, pushBytes);
+    if (!built) return built.error();
+    pipeline = std::move(*built);
+    return success();
+}
+
+Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, const Desc& desc)
+{
+    if (desc.width < 1 || desc.height < 1 || desc.width > gpu.properties.limits.maxImageDimension2D ||
+        desc.height > gpu.properties.limits.maxImageDimension2D)
+        return Error{ErrorCode::badArgument, "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) +
+                                                 " is outside 1.." + std::to_string(gpu.properties.limits.maxImageDimension2D) +
+                                                 " pixels a side"};
+    IndirectLight made;
+    made.gpu = &gpu;
+    made.field = &field;
+    made.desc = desc;
+    auto frame = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
+    if (!frame) return frame.error();
+    made.frame = std::move(*frame);
+
+    auto image = [&](GpuImage& target, VkFormat format, const char* what) -> Status
+    {
+        ImageDesc imageDesc;
+        imageDesc.format = format;
+        imageDesc.width = desc.width;
+        imageDesc.height = desc.height;
+        imageDesc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        auto result = gpu.makeImage(imageDesc, what);
+        if (!result) return result.error();
+        target = std::move(*result);
+        return gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                transition(gpu, cmd, target,
+                           {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE,
+                            VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+            });
+    };
+    if (desc.effects.glossy)
+    {
+        if (auto s = image(made.noisyGlossy, kLightFormat, "glossy light"); !s) return s.error();
+        if (auto s = image(made.countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s.error();
+        const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
+        if (auto s = made.makePass(made.glossyPass, made.glossySet, shader, true, 0); !s) return s.error();
+        made.glossySet.write(4, made.noisyGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
+        made.glossySet.write(5, made.countImage.view(), VK_IMAGE_LAYOUT_GENERAL);
+        if (desc.effects.denoise)
+        {
+            if (auto s = image(made.smoothGlossy, kLightFormat, "denoised glossy light"); !s) return s.error();
+            if (auto s = made.makePass(made.denoisePass, made.denoiseSet, denoise_comp, true, sizeof(DenoisePush)); !s) return s.error();
+            made.denoiseSet.write(4, made.noisyGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
+            made.denoiseSet.write(5, made.smoothGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
+        }
+    }
+    if (desc.effects.diffuse)
+    {
+        if (auto s = image(made.diffuseImage, kLightFormat, "diffuse light"); !s) return s.error();
+        if (auto s = made.makePass(made.diffusePass, made.diffuseSet, gather_diffuse_comp, false, 0); !s) return s.error();
+        made.diffuseSet.write(4, made.diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
+    }
+    return made;
+}
+
+void IndirectLight::setInputs(const FrameInputs& inputs)
+{
+    for (auto [pipeline, set] : {std::pair{&glossyPass, &glossySet}, {&diffusePass, &diffuseSet}, {&denoisePass, &denoiseSet}})
+    {
+        if (!*pipeline) continue;
+        set->write(0, inputs.depth, inputs.layout);
+        set->write(1, inputs.normalRoughness, inputs.layout);
+        set->write(2, inputs.baseColorMetallic, inputs.layout);
+    }
+}
+
+void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
+{
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT); // the frame before may still read what this one writes
+    gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
+    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+    auto dispatch = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name)
+    {
+        if (timer) timer->begin(cmd, name);
+        const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
+        pipeline.bind(cmd, sets);
+        if (&pipeline == &denoisePass) pipeline.push(cmd, DenoisePush{});
+        gpu->vk.CmdDispatch(cmd, (desc.width + 7) / 8, (desc.height + 7) / 8, 1);
+        if (timer) timer->end(cmd);
+    };
+    if (glossyPass) dispatch(glossyPass, glossySet, "glossy trace");
+    if (diffusePass) dispatch(diffusePass, diffuseSet, "diffuse gather");
+    if (denoisePass)
+    {
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+        dispatch(denoisePass, denoiseSet, "denoise");
+    }
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT);
+}
+
+uint64_t IndirectLight::deviceBytes() const
+{
+    const uint64_t pixels = uint64_t(desc.width) * desc.height;
+    uint64_t bytes = frame.size();
+    for (const GpuImage* image : {&noisyGlossy, &smoothGlossy, &countImage, &diffuseImage})
+        if (*image) bytes += 16 * pixels;
+    return bytes;
+}
+
+} // namespace sconce
