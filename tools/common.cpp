@@ -1,0 +1,352 @@
+#include "tools/common.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "scene/builtin_scenes.h"
+#include "scene/scene_gltf.h"
+
+namespace sconce::tools
+{
+
+int exitCode(ErrorCode code)
+{
+    switch (code)
+    {
+    case ErrorCode::badArgument: return exitUsage;
+    case ErrorCode::badInput: return exitInput;
+    case ErrorCode::missingFeature:
+    case ErrorCode::deviceFailure:
+    case ErrorCode::outOfMemory: return exitDevice;
+    case ErrorCode::fileError: return exitFile;
+    case ErrorCode::cancelled: return exitInterrupted;
+    }
+    return exitInput;
+}
+
+CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, const std::string& description)
+{
+    CLI::App* command = app.add_subcommand(name, description);
+    command->add_flag("--json", context.json, "Machine-readable results on stdout (default: text)");
+    command->add_flag("--quiet,-q", context.quiet, "No progress and no notes on stderr, errors only (default: off)");
+    return command;
+}
+
+int fail(const Error& error)
+{
+    endProgress();
+    std::cerr << "sconce: " << error.message << std::endl;
+    return exitCode(error.code);
+}
+
+int fail(ErrorCode code, const std::string& message) { return fail(Error{code, message}); }
+
+void print(const Json& json) { std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl; }
+
+void note(const Context& context, const std::string& text)
+{
+    if (context.quiet) return;
+    endProgress();
+    std::cerr << text << std::endl;
+}
+
+// ---- progress
+
+namespace
+{
+
+std::atomic<bool> interruptedFlag{false};
+bool barDrawn = false;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string minutes(double seconds)
+{
+    char text[32];
+    std::snprintf(text, sizeof(text), "%d:%02d", int(seconds) / 60, int(seconds) % 60);
+    return text;
+}
+
+struct ProgressState
+{
+    std::string stage;
+    double stageStart = 0.0;
+    double lastShown = -1e9;
+    double lastDone = 0.0;
+};
+
+} // namespace
+
+void catchInterrupts()
+{
+    struct sigaction action = {};
+    action.sa_handler = [](int) { interruptedFlag = true; };
+    action.sa_flags = SA_RESETHAND; // a second Ctrl-C ends the process at once
+    sigaction(SIGINT, &action, nullptr);
+}
+
+bool interrupted() { return interruptedFlag; }
+
+void endProgress()
+{
+    if (barDrawn) std::cerr << std::endl;
+    barDrawn = false;
+}
+
+Progress consoleProgress(const Context& context)
+{
+    if (context.quiet) return [](std::string_view, double) { return !interrupted(); };
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    return [terminal, state = std::make_shared<ProgressState>()](std::string_view stage, double done)
+    {
+        const double time = now();
+        const bool fresh = stage != state->stage;
+        if (fresh)
+        {
+            endProgress();
+            *state = {std::string(stage), time, -1e9, 0.0};
+        }
+        done = std::clamp(done, 0.0, 1.0);
+        // A bar follows the work; a log gets a line when a stage begins, ends, and every few seconds between.
+        const bool finished = done >= 1.0 && state->lastDone < 1.0;
+        if (!fresh && !finished && time - state->lastShown < (terminal ? 0.1 : 5.0)) return !interrupted();
+        state->lastShown = time;
+        state->lastDone = done;
+        const double elapsed = time - state->stageStart;
+        std::string text = std::to_string(int(100.0 * done)) + " %";
+        if (done >= 1.0)
+            text += ", took " + minutes(elapsed);
+        else if (done > 0.02 && elapsed > 1.0)
+            text += ", " + minutes(elapsed * (1.0 - done) / done) + " left";
+        if (terminal)
+        {
+            const int filled = int(24.0 * done);
+            std::cerr << "\r\x1b[K[" << std::string(size_t(filled), '#') << std::string(size_t(24 - filled), ' ') << "] " << stage << ": " << text
+                      << std::flush;
+            barDrawn = true;
+        }
+        else
+            std::cerr << stage << ": " << text << std::endl;
+        return !interrupted();
+    };
+}
+
+// ---- numbers
+
+std::vector<std::string> split(const std::string& text, char separator)
+{
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+        if (c == separator)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    return parts;
+}
+
+Result<std::vector<float>> parseNumbers(const std::string& text, std::initializer_list<size_t> counts)
+{
+    std::vector<float> numbers;
+    for (const std::string& part : split(text, ','))
+    {
+        float number = 0.0f;
+        const char* first = part.data() + (part.starts_with('+') ? 1 : 0);
+        const auto [end, error] = std::from_chars(first, part.data() + part.size(), number);
+        if (part.empty() || error != std::errc{} || end != part.data() + part.size() || !std::isfinite(number))
+            return Error{ErrorCode::badArgument, "'" + part + "' in '" + text + "' is not a finite number"};
+        numbers.push_back(number);
+    }
+    if (std::ranges::find(counts, numbers.size()) == counts.end())
+    {
+        std::string wanted;
+        for (const size_t count : counts) wanted += (wanted.empty() ? "" : " or ") + std::to_string(count);
+        return Error{ErrorCode::badArgument, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " + wanted + ", separated by commas"};
+    }
+    return numbers;
+}
+
+Result<std::vector<uint32_t>> parseSize(const std::string& text, size_t count)
+{
+    std::vector<uint32_t> numbers;
+    for (const std::string& part : split(text, 'x'))
+    {
+        uint32_t number = 0;
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+        if (part.empty() || error != std::errc{} || end != part.data() + part.size() || number == 0 || number > 65535)
+            return Error{ErrorCode::badArgument, "'" + part + "' in '" + text + "' is not a whole number from 1 to 65535"};
+        numbers.push_back(number);
+    }
+    if (numbers.size() != count)
+        return Error{ErrorCode::badArgument, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " + std::to_string(count) + ", separated by x"};
+    return numbers;
+}
+
+void addVec3(CLI::App* command, const std::string& name, std::optional<vec3>& target, const std::string& description)
+{
+    command
+        ->add_option_function<std::string>(
+            name,
+            [&target, name](const std::string& text)
+            {
+                const Result<std::vector<float>> numbers = parseNumbers(text, {3});
+                if (!numbers) throw CLI::ValidationError(name, numbers.error().message);
+                target = vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+            },
+            description)
+        ->type_name("X,Y,Z");
+}
+
+void addSize(CLI::App* command, uint32_t& width, uint32_t& height)
+{
+    command
+        ->add_option_function<std::string>(
+            "--size",
+            [&](const std::string& text)
+            {
+                const Result<std::vector<uint32_t>> numbers = parseSize(text, 2);
+                if (!numbers) throw CLI::ValidationError("--size", numbers.error().message);
+                width = (*numbers)[0], height = (*numbers)[1];
+                if (width > 8192 || height > 8192) throw CLI::ValidationError("--size", "'" + text + "' is larger than 8192x8192");
+            },
+            "Picture size in pixels (default: " + std::to_string(width) + "x" + std::to_string(height) + "; range: 1x1 to 8192x8192)")
+        ->type_name("WxH");
+}
+
+// ---- scene and camera
+
+void SceneOptions::add(CLI::App* command)
+{
+    command->add_option("SCENE", name, "A .gltf or .glb file, or the name of a built-in scene (see `sconce scenes`)")->required()->type_name("");
+    command
+        ->add_option_function<std::string>(
+            "--sun",
+            [this](const std::string& text)
+            {
+                const Result<std::vector<float>> n = parseNumbers(text, {3, 6});
+                if (!n) throw CLI::ValidationError("--sun", n.error().message);
+                const vec3 direction((*n)[0], (*n)[1], (*n)[2]);
+                if (!(glm::length(direction) > 0.0f)) throw CLI::ValidationError("--sun", "'" + text + "' has no direction");
+                sunDirection = glm::normalize(direction);
+                if (n->size() == 6) sunIrradiance = vec3((*n)[3], (*n)[4], (*n)[5]);
+                if (sunIrradiance && glm::any(glm::lessThan(*sunIrradiance, vec3(0.0f)))) throw CLI::ValidationError("--sun", "'" + text + "' has negative light");
+            },
+            "Replaces the scene's directional lights by one: the way its light travels, any length, and its irradiance in W/m^2 "
+            "(default: the scene's own; irradiance 3.2,3.0,2.7; range: >= 0)")
+        ->type_name("X,Y,Z[,R,G,B]");
+    command
+        ->add_option_function<std::string>(
+            "--sky",
+            [this](const std::string& text)
+            {
+                const Result<std::vector<float>> n = parseNumbers(text, {3});
+                if (!n) throw CLI::ValidationError("--sky", n.error().message);
+                sky = vec3((*n)[0], (*n)[1], (*n)[2]);
+                if (glm::any(glm::lessThan(*sky, vec3(0.0f)))) throw CLI::ValidationError("--sky", "'" + text + "' has negative light");
+            },
+            "Radiance of the sky, W/(m^2 sr) (default: the scene's own; range: >= 0)")
+        ->type_name("R,G,B");
+}
+
+Result<Scene> SceneOptions::load(const Context& context) const
+{
+    std::string builtinNames;
+    bool builtin = false;
+    for (const BuiltinScene& each : builtinScenes())
+    {
+        builtin = builtin || each.name == name;
+        builtinNames += (builtinNames.empty() ? "" : ", ") + std::string(each.name);
+    }
+    const std::filesystem::path path(name);
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (!builtin && extension != ".gltf" && extension != ".glb")
+        return Error{ErrorCode::badInput, "'" + name + "' is neither a .gltf or .glb file nor a built-in scene (" + builtinNames + ")."};
+    Result<Scene> scene = builtin ? makeBuiltinScene(name) : loadGltf(path, consoleProgress(context));
+    endProgress();
+    if (!scene) return scene;
+    for (const std::string& warning : scene->warnings) note(context, "Note: " + warning);
+    if (sunDirection)
+    {
+        std::erase_if(scene->lights, [](const Light& light) { return light.type == LightType::directional; });
+        Light sun;
+        sun.name = "sun";
+        sun.direction = *sunDirection;
+        sun.intensity = sunIrradiance.value_or(vec3(kDefaultSunIrradiance[0], kDefaultSunIrradiance[1], kDefaultSunIrradiance[2]));
+        scene->lights.insert(scene->lights.begin(), sun);
+    }
+    if (sky) scene->sky = *sky;
+    if (!sunDirection && !sky && addDefaultLight(*scene)) note(context, "Note: the scene has no light; a default sun and sky are used (--sun, --sky).");
+    return scene;
+}
+
+void CameraOptions::add(CLI::App* command)
+{
+    command->add_option("--camera", name, "Camera of the scene, by name or number (default: the first)")->type_name("NAME");
+    addVec3(command, "--eye", eye, "Where the camera is, metres (default: the scene's camera)");
+    addVec3(command, "--target", target, "What it looks at, metres; needed with --eye");
+    command->add_option("--fov", fov, "Vertical field of view with --eye, degrees (default: 60; range: 1 to 170)")->check(CLI::Range(1.0f, 170.0f))->type_name("DEGREES");
+}
+
+Result<Camera> CameraOptions::choose(const Scene& scene) const
+{
+    if (eye.has_value() != target.has_value()) return Error{ErrorCode::badArgument, "--eye and --target belong together; give both."};
+    if (eye && !name.empty()) return Error{ErrorCode::badArgument, "--camera and --eye contradict each other; give one."};
+    if (eye)
+    {
+        const vec3 forward = *target - *eye;
+        if (!(glm::length(forward) > 0.0f)) return Error{ErrorCode::badArgument, "--eye and --target are the same point; move one."};
+        Camera camera;
+        camera.name = "custom";
+        camera.eye = *eye;
+        camera.forward = glm::normalize(forward);
+        const vec3 world = std::abs(camera.forward.y) > 0.999f ? vec3(0.0f, 0.0f, -1.0f) : vec3(0.0f, 1.0f, 0.0f);
+        camera.up = glm::normalize(world - glm::dot(world, camera.forward) * camera.forward);
+        camera.verticalFov = glm::radians(fov);
+        return camera;
+    }
+    if (scene.cameras.empty()) return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no camera; give --eye and --target."};
+    if (name.empty()) return scene.cameras.front();
+    std::string known;
+    for (size_t i = 0; i < scene.cameras.size(); ++i)
+    {
+        if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
+        known += (known.empty() ? "" : ", ") + scene.cameras[i].name;
+    }
+    return Error{ErrorCode::badArgument, "The scene '" + scene.name + "' has no camera '" + name + "'; it has: " + (known.empty() ? "none" : known) + "."};
+}
+
+void addDevice(CLI::App* command, std::string& device)
+{
+    command->add_option("--device", device, "Vulkan device, by number or part of its name, see `sconce doctor` (default: the best)")->type_name("NAME");
+}
+
+// ---- cost
+
+Stopwatch::Stopwatch() : start(now()) {}
+double Stopwatch::seconds() const { return now() - start; }
+
+double peakRssMb()
+{
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return double(usage.ru_maxrss) / 1024.0; // Linux counts kilobytes
+}
+
+void addCost(Json& json, const Stopwatch& watch)
+{
+    json["seconds"] = std::round(watch.seconds() * 1000.0) / 1000.0;
+    json["peak_rss_mb"] = std::round(peakRssMb() * 10.0) / 10.0;
+}
+
+Json toJson(vec3 v) { return Json::array({v.x, v.y, v.z}); }
+
+} // namespace sconce::tools

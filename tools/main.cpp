@@ -1,0 +1,47 @@
+// The `sconce` command: thin, it calls the libraries.
+#include <exception>
+#include <iostream>
+
+#include "tools/common.h"
+
+int main(int argc, char** argv)
+{
+    using namespace sconce::tools;
+    CLI::App app("Real-time indirect light from non-uniformly placed light field probes.\n"
+                 "stdout is data, stderr is progress and notes.\n"
+                 "Exit codes: 0 ok, 1 a threshold was missed, 2 usage, 3 input, 4 device or memory, 5 file, 130 interrupted.",
+        "sconce");
+    app.set_version_flag("--version", SCONCE_VERSION);
+    app.require_subcommand(1);
+    Context context;
+    addSceneCommands(app, context);
+    addPlaceCommand(app, context);
+    addFieldCommands(app, context);
+    addRenderCommand(app, context);
+    addTraceCommand(app, context);
+    addReferenceCommands(app, context);
+    addDoctorCommand(app, context);
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& error)
+    {
+        return app.exit(error) == 0 ? exitOk : exitUsage;
+    }
+    catchInterrupts();
+    try
+    {
+        const int code = context.action();
+        endProgress();
+        return code;
+    }
+    catch (const std::bad_alloc&)
+    {
+        return fail(sconce::ErrorCode::outOfMemory, "There is not enough memory; choose a smaller scene, fewer probes or a lower resolution.");
+    }
+    catch (const std::exception& error)
+    {
+        return fail(sconce::ErrorCode::badInput, std::string("Unexpected failure: ") + error.what() + ".");
+    }
+}
