@@ -157,6 +157,60 @@ bool finite(const gpu::vec3& v)
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// What is wrong with the octree; empty when every descent ends at a leaf inside the texture that names probes which are there.
+std::string octreeProblem(const FieldData& field)
+{
+    const gpu::LightFieldInfo& i = field.info;
+    const Octree& tree = field.octree;
+    if (glm::ivec3(i.topCells) != tree.topCells || i.topShift != tree.topShift || glm::uvec3(i.bricks) != tree.bricks ||
+        i.marker != tree.marker || glm::vec3(i.boundsLow) != tree.boundsLow || i.voxel != tree.voxel)
+        return "its octree disagrees with its info";
+    if (!(tree.voxel > 0.0f) || !std::isfinite(tree.voxel)) return "its octree's voxel is not a positive number";
+    if (tree.topShift < 0 || tree.topShift > 15) return "its octree's depth " + std::to_string(tree.topShift) + " is not from 0 to 15";
+    uint64_t topBricks = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (tree.topCells[axis] < 1 || tree.topCells[axis] > 65535 || (int64_t(tree.topCells[axis]) << tree.topShift) > (1 << 24))
+            return "its octree's top grid has an impossible size";
+        topBricks *= uint64_t(tree.topCells[axis] + 1) / 2;
+    }
+    const uint64_t bricks = uint64_t(tree.bricks.x) * tree.bricks.y * tree.bricks.z;
+    if (topBricks > bricks) return "its octree's top grid is larger than its texture";
+
+    // Every brick at every level it is reached at, each once, so that a cycle ends the walk and not the program.
+    std::vector<uint16_t> seenAt(bricks, 0);
+    std::vector<std::pair<uint32_t, int>> queue;
+    const auto reach = [&](uint64_t brick, int level)
+    {
+        if ((seenAt[brick] >> level & 1) != 0) return;
+        seenAt[brick] = uint16_t(seenAt[brick] | 1u << level);
+        queue.emplace_back(uint32_t(brick), level);
+    };
+    for (uint64_t brick = 0; brick < topBricks; ++brick) reach(brick, tree.topShift);
+    while (!queue.empty())
+    {
+        const auto [brick, level] = queue.back();
+        queue.pop_back();
+        const glm::uvec3 corner =
+            2u * glm::uvec3(brick % tree.bricks.x, brick / tree.bricks.x % tree.bricks.y, brick / tree.bricks.x / tree.bricks.y);
+        for (uint32_t child = 0; child < 8; ++child)
+        {
+            const glm::uvec3 at = corner + glm::uvec3(child & 1, child >> 1 & 1, child >> 2);
+            const uint16_t* t = &tree.texels[4 * (at.x + 2ull * tree.bricks.x * (at.y + 2ull * tree.bricks.y * at.z))];
+            if (t[3] == tree.marker)
+            {
+                const uint64_t next = tree.marker == 255 ? t[0] + 256ull * t[1] + 65536ull * t[2] : t[0] + 65536ull * t[1];
+                if (level == 0) return "octree brick " + std::to_string(brick) + " goes on below the finest voxels";
+                if (next >= bricks) return "octree brick " + std::to_string(brick) + " points outside its texture";
+                reach(next, level - 1);
+            }
+            else if (std::max({t[0], t[1], t[2], t[3]}) >= field.probes.size())
+                return "octree brick " + std::to_string(brick) + " names a probe that is not there";
+        }
+    }
+    return {};
+}
+
 /// What is wrong with the values that addressing relies on; empty when all is well.
 std::string contentProblem(const FieldData& field)
 {
@@ -166,21 +220,11 @@ std::string contentProblem(const FieldData& field)
         return "its info holds a number that is not finite";
     for (size_t p = 0; p < field.probes.size(); ++p)
         if (!finite(field.probes[p].centre)) return "the centre of probe " + std::to_string(p) + " is not finite";
-    const Octree& tree = field.octree;
-    const uint64_t bricks = uint64_t(tree.bricks.x) * tree.bricks.y * tree.bricks.z;
-    const uint64_t base = uint64_t(tree.marker) + 1;
-    for (size_t texel = 0; texel + 3 < tree.texels.size(); texel += 4)
-    {
-        const uint16_t* t = &tree.texels[texel];
-        if (t[3] == tree.marker)
-        {
-            if (t[0] + base * (t[1] + base * t[2]) >= bricks)
-                return "octree texel " + std::to_string(texel / 4) + " points outside its texture";
-        }
-        else if (std::max({t[0], t[1], t[2], t[3]}) >= std::max<size_t>(field.probes.size(), 1))
-            return "octree texel " + std::to_string(texel / 4) + " names a probe that is not there";
-    }
-    return {};
+    if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
+        return "its scene bounds are not finite";
+    const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
+    if (field.octree.texels.empty()) return grid || field.probes.empty() ? "" : "it has neither an octree nor a grid to find its probes by";
+    return octreeProblem(field);
 }
 
 OctreeHeader headerOf(const Octree& tree)

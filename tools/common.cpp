@@ -22,13 +22,18 @@ int exitCode(ErrorCode code)
 {
     switch (code)
     {
-    case ErrorCode::badArgument: return exitUsage;
-    case ErrorCode::badInput: return exitInput;
+    case ErrorCode::badArgument:
+        return exitUsage;
+    case ErrorCode::badInput:
+        return exitInput;
     case ErrorCode::missingFeature:
     case ErrorCode::deviceFailure:
-    case ErrorCode::outOfMemory: return exitDevice;
-    case ErrorCode::fileError: return exitFile;
-    case ErrorCode::cancelled: return exitInterrupted;
+    case ErrorCode::outOfMemory:
+        return exitDevice;
+    case ErrorCode::fileError:
+        return exitFile;
+    case ErrorCode::cancelled:
+        return exitInterrupted;
     }
     return exitInput;
 }
@@ -48,9 +53,15 @@ int fail(const Error& error)
     return exitCode(error.code);
 }
 
-int fail(ErrorCode code, const std::string& message) { return fail(Error{code, message}); }
+int fail(ErrorCode code, const std::string& message)
+{
+    return fail(Error{code, message});
+}
 
-void print(const Json& json) { std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl; }
+void print(const Json& json)
+{
+    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+}
 
 void note(const Context& context, const std::string& text)
 {
@@ -67,7 +78,10 @@ namespace
 std::atomic<bool> interruptedFlag{false};
 bool barDrawn = false;
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 std::string minutes(double seconds)
 {
@@ -94,7 +108,10 @@ void catchInterrupts()
     sigaction(SIGINT, &action, nullptr);
 }
 
-bool interrupted() { return interruptedFlag; }
+bool interrupted()
+{
+    return interruptedFlag;
+}
 
 void endProgress()
 {
@@ -130,8 +147,8 @@ Progress consoleProgress(const Context& context)
         if (terminal)
         {
             const int filled = int(24.0 * done);
-            std::cerr << "\r\x1b[K[" << std::string(size_t(filled), '#') << std::string(size_t(24 - filled), ' ') << "] " << stage << ": " << text
-                      << std::flush;
+            std::cerr << "\r\x1b[K[" << std::string(size_t(filled), '#') << std::string(size_t(24 - filled), ' ') << "] " << stage << ": "
+                      << text << std::flush;
             barDrawn = true;
         }
         else
@@ -169,7 +186,8 @@ Result<std::vector<float>> parseNumbers(const std::string& text, std::initialize
     {
         std::string wanted;
         for (const size_t count : counts) wanted += (wanted.empty() ? "" : " or ") + std::to_string(count);
-        return Error{ErrorCode::badArgument, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " + wanted + ", separated by commas"};
+        return Error{ErrorCode::badArgument,
+                     "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " + wanted + ", separated by commas"};
     }
     return numbers;
 }
@@ -186,7 +204,8 @@ Result<std::vector<uint32_t>> parseSize(const std::string& text, size_t count)
         numbers.push_back(number);
     }
     if (numbers.size() != count)
-        return Error{ErrorCode::badArgument, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " + std::to_string(count) + ", separated by x"};
+        return Error{ErrorCode::badArgument, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " +
+                                                 std::to_string(count) + ", separated by x"};
     return numbers;
 }
 
@@ -225,7 +244,9 @@ void addSize(CLI::App* command, uint32_t& width, uint32_t& height)
 
 void SceneOptions::add(CLI::App* command)
 {
-    command->add_option("SCENE", name, "A .gltf or .glb file, or the name of a built-in scene (see `sconce scenes`)")->required()->type_name("");
+    command->add_option("SCENE", name, "A .gltf or .glb file, or the name of a built-in scene (see `sconce scenes`)")
+        ->required()
+        ->type_name("");
     command
         ->add_option_function<std::string>(
             "--sun",
@@ -237,7 +258,8 @@ void SceneOptions::add(CLI::App* command)
                 if (!(glm::length(direction) > 0.0f)) throw CLI::ValidationError("--sun", "'" + text + "' has no direction");
                 sunDirection = glm::normalize(direction);
                 if (n->size() == 6) sunIrradiance = vec3((*n)[3], (*n)[4], (*n)[5]);
-                if (sunIrradiance && glm::any(glm::lessThan(*sunIrradiance, vec3(0.0f)))) throw CLI::ValidationError("--sun", "'" + text + "' has negative light");
+                if (sunIrradiance && glm::any(glm::lessThan(*sunIrradiance, vec3(0.0f))))
+                    throw CLI::ValidationError("--sun", "'" + text + "' has negative light");
             },
             "Replaces the scene's directional lights by one: the way its light travels, any length, and its irradiance in W/m^2 "
             "(default: the scene's own; irradiance 3.2,3.0,2.7; range: >= 0)")
@@ -284,7 +306,8 @@ Result<Scene> SceneOptions::load(const Context& context) const
         scene->lights.insert(scene->lights.begin(), sun);
     }
     if (sky) scene->sky = *sky;
-    if (!sunDirection && !sky && addDefaultLight(*scene)) note(context, "Note: the scene has no light; a default sun and sky are used (--sun, --sky).");
+    if (!sunDirection && !sky && addDefaultLight(*scene))
+        note(context, "Note: the scene has no light; a default sun and sky are used (--sun, --sky).");
     return scene;
 }
 
@@ -293,7 +316,9 @@ void CameraOptions::add(CLI::App* command)
     command->add_option("--camera", name, "Camera of the scene, by name or number (default: the first)")->type_name("NAME");
     addVec3(command, "--eye", eye, "Where the camera is, metres (default: the scene's camera)");
     addVec3(command, "--target", target, "What it looks at, metres; needed with --eye");
-    command->add_option("--fov", fov, "Vertical field of view with --eye, degrees (default: 60; range: 1 to 170)")->check(CLI::Range(1.0f, 170.0f))->type_name("DEGREES");
+    command->add_option("--fov", fov, "Vertical field of view with --eye, degrees (default: 60; range: 1 to 170)")
+        ->check(CLI::Range(1.0f, 170.0f))
+        ->type_name("DEGREES");
 }
 
 Result<Camera> CameraOptions::choose(const Scene& scene) const
@@ -321,18 +346,23 @@ Result<Camera> CameraOptions::choose(const Scene& scene) const
         if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
         known += (known.empty() ? "" : ", ") + scene.cameras[i].name;
     }
-    return Error{ErrorCode::badArgument, "The scene '" + scene.name + "' has no camera '" + name + "'; it has: " + (known.empty() ? "none" : known) + "."};
+    return Error{ErrorCode::badArgument,
+                 "The scene '" + scene.name + "' has no camera '" + name + "'; it has: " + (known.empty() ? "none" : known) + "."};
 }
 
 void addDevice(CLI::App* command, std::string& device)
 {
-    command->add_option("--device", device, "Vulkan device, by number or part of its name, see `sconce doctor` (default: the best)")->type_name("NAME");
+    command->add_option("--device", device, "Vulkan device, by number or part of its name, see `sconce doctor` (default: the best)")
+        ->type_name("NAME");
 }
 
 // ---- cost
 
 Stopwatch::Stopwatch() : start(now()) {}
-double Stopwatch::seconds() const { return now() - start; }
+double Stopwatch::seconds() const
+{
+    return now() - start;
+}
 
 double peakRssMb()
 {
@@ -347,6 +377,9 @@ void addCost(Json& json, const Stopwatch& watch)
     json["peak_rss_mb"] = std::round(peakRssMb() * 10.0) / 10.0;
 }
 
-Json toJson(vec3 v) { return Json::array({v.x, v.y, v.z}); }
+Json toJson(vec3 v)
+{
+    return Json::array({v.x, v.y, v.z});
+}
 
 } // namespace sconce::tools

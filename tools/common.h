@@ -41,8 +41,7 @@ struct Context
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, const std::string& description);
 
 /// Runs `run(options)` when the command line names this sub-command. The options live as long as the command line does.
-template <class Options, class Run>
-void onChosen(CLI::App* command, Context& context, std::shared_ptr<Options> options, Run run)
+template <class Options, class Run> void onChosen(CLI::App* command, Context& context, std::shared_ptr<Options> options, Run run)
 {
     command->callback([&context, options, run] { context.action = [&context, options, run] { return run(*options, context); }; });
 }

@@ -10,7 +10,7 @@ int main(int argc, char** argv)
     CLI::App app("Real-time indirect light from non-uniformly placed light field probes.\n"
                  "stdout is data, stderr is progress and notes.\n"
                  "Exit codes: 0 ok, 1 a threshold was missed, 2 usage, 3 input, 4 device or memory, 5 file, 130 interrupted.",
-        "sconce");
+                 "sconce");
     app.set_version_flag("--version", SCONCE_VERSION);
     app.require_subcommand(1);
     Context context;
@@ -38,7 +38,8 @@ int main(int argc, char** argv)
     }
     catch (const std::bad_alloc&)
     {
-        return fail(sconce::ErrorCode::outOfMemory, "There is not enough memory; choose a smaller scene, fewer probes or a lower resolution.");
+        return fail(sconce::ErrorCode::outOfMemory,
+                    "There is not enough memory; choose a smaller scene, fewer probes or a lower resolution.");
     }
     catch (const std::exception& error)
     {

@@ -71,10 +71,10 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
     for (auto* words : {&field.distance, &field.radiance, &field.irradiance})
         for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
     field.octree.boundsHigh = {1.0f, 2.0f, 3.0f};
-    field.octree.voxel = 0.125f;
-    field.octree.topCells = {2, 2, 2};
-    field.octree.topShift = 3;
-    field.octree.bricks = {2, 1, 1};
+    field.info.voxel = field.octree.voxel = 0.125f;
+    field.info.topCells = field.octree.topCells = {2, 2, 2};
+    field.info.topShift = field.octree.topShift = 3;
+    field.info.bricks = field.octree.bricks = {2, 1, 1};
     field.octree.leaves = 15;
     field.octree.nodes = 1;
     field.octree.texels.assign(2 * 8 * 4, uint16_t(probes - 1));
@@ -270,6 +270,13 @@ TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
     field = smallField();
     field.octree.texels[0] = 2; // bricks 0..1
     EXPECT_NE(saveField(field, file).error().message.find("outside"), std::string::npos);
+    field = smallField();
+    field.octree.texels[4 * 2] = 1, field.octree.texels[4 * 2 + 1] = 0, field.octree.texels[4 * 2 + 2] = 0; // brick 1 points to itself
+    field.octree.texels[4 * 2 + 3] = 255;
+    EXPECT_NE(saveField(field, file).error().message.find("below the finest"), std::string::npos);
+    field = smallField();
+    field.info.topShift = 2;
+    EXPECT_NE(saveField(field, file).error().message.find("disagrees"), std::string::npos);
     field = smallField();
     field.probes[1].centre.y = std::numeric_limits<float>::quiet_NaN();
     EXPECT_NE(saveField(field, file).error().message.find("probe 1"), std::string::npos);

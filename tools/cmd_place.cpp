@@ -1,0 +1,113 @@
+// sconce place: where the probes of a scene go.
+#include <iostream>
+
+#include "placement/place.h"
+#include "tools/common.h"
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+struct PlaceOptions
+{
+    SceneOptions scene;
+    PlaceSettings settings;
+    std::string output;
+};
+
+int runPlace(const PlaceOptions& options, const Context& context)
+{
+    const Stopwatch watch;
+    Result<Scene> scene = options.scene.load(context);
+    if (!scene) return fail(scene.error());
+    PlaceReport report;
+    Result<ProbeSet> set = placeProbes(*scene, options.settings, report, consoleProgress(context));
+    if (!set) return fail(set.error());
+    for (const std::string& warning : report.warnings) note(context, "Note: " + warning);
+    if (set->scene.empty()) set->scene = scene->name;
+    if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());
+
+    Json json;
+    json["probes"] = set->probes.size();
+    json["method"] = set->method;
+    if (set->grid) json["grid"] = {set->grid->count.x, set->grid->count.y, set->grid->count.z};
+    json["seed"] = set->seed;
+    json["coverage"] = {{"rays", report.coverageRays}, {"area", report.coverageArea}, {"best_possible", report.bestPossible}};
+    json["median_cosine"] = report.medianCosine;
+    json["median_distance"] = report.medianDistance;
+    json["reachable"] = {{"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
+    json["voxel"] = report.voxel;
+    json["clearance"] = report.clearance;
+    json["candidates"] = report.candidates;
+    json["grid_outside"] = report.gridOutside;
+    json["warnings"] = report.warnings;
+    addCost(json, watch);
+    if (context.json)
+        print(json);
+    else
+    {
+        std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
+                  << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area " << 100.0f * report.coverageArea << " %\n"
+                  << "reachable space: " << report.reachableVolume << " m^3, cells of " << report.voxel << " m\n"
+                  << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
+    }
+    return exitOk;
+}
+
+} // namespace
+
+void addPlaceCommand(CLI::App& app, Context& context)
+{
+    CLI::App* command = addCommand(app, context, "place", "Decides where the probes of a scene go and writes probes.json");
+    auto options = std::make_shared<PlaceOptions>();
+    PlaceSettings& settings = options->settings;
+    options->scene.add(command);
+    command->add_option("-o,--output", options->output, "probes.json to write (required)")->required()->type_name("FILE");
+    const std::map<std::string, PlaceSettings::Method> methods{{"sdf", PlaceSettings::Method::sdf}, {"grid", PlaceSettings::Method::grid}};
+    command->add_option("--method", settings.method, "sdf: skeleton of the distance field; grid: uniform grid in the reachable space (default: sdf)")
+        ->transform(CLI::CheckedTransformer(methods))
+        ->type_name("sdf|grid");
+    command
+        ->add_option_function<std::string>(
+            "--grid",
+            [&settings](const std::string& text)
+            {
+                const Result<std::vector<uint32_t>> n = parseSize(text, 3);
+                if (!n) throw CLI::ValidationError("--grid", n.error().message);
+                settings.grid = {int((*n)[0]), int((*n)[1]), int((*n)[2])};
+                settings.method = PlaceSettings::Method::grid;
+            },
+            "Probes along each axis of the grid; implies --method grid (default: chosen from --count; range: product 1 to 65535)")
+        ->type_name("NxNxN");
+    command->add_option("--count", settings.count, "Probes (default: sdf the fewest that reach --coverage, grid 64; range: 1 to 65535)")
+        ->check(CLI::Range(1u, kMostProbes))
+        ->type_name("N");
+    command->add_option("--coverage", settings.coverage, "Share of the surface points that rays hit which some probe must see, when --count is not given (default: 0.995; range: 0.01 to 1)")
+        ->check(CLI::Range(0.01f, 1.0f))
+        ->type_name("F");
+    command
+        ->add_option_function<std::vector<std::string>>(
+            "--inside",
+            [&settings](const std::vector<std::string>& texts)
+            {
+                for (const std::string& text : texts)
+                {
+                    const Result<std::vector<float>> n = parseNumbers(text, {3});
+                    if (!n) throw CLI::ValidationError("--inside", n.error().message);
+                    settings.inside.emplace_back((*n)[0], (*n)[1], (*n)[2]);
+                }
+            },
+            "A point in the space that counts, metres; may be given again (default: the cameras, else the largest enclosed region)")
+        ->expected(1)
+        ->take_all()
+        ->type_name("X,Y,Z");
+    command->add_option("--seed", settings.seed, "Of every random choice; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")->type_name("N");
+    command->add_option("--clearance", settings.clearance, "Least distance of a probe from every surface, sdf, metres (default: one cell of the distance field; range: 0 to 1000)")
+        ->check(CLI::Range(0.0f, 1000.0f))
+        ->type_name("METRES");
+    onChosen(command, context, options, runPlace);
+}
+
+} // namespace sconce::tools
