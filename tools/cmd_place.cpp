@@ -37,7 +37,8 @@ int runPlace(const PlaceOptions& options, const Context& context)
     json["coverage"] = {{"rays", report.coverageRays}, {"area", report.coverageArea}, {"best_possible", report.bestPossible}};
     json["median_cosine"] = report.medianCosine;
     json["median_distance"] = report.medianDistance;
-    json["reachable"] = {{"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
+    json["reachable"] = {
+        {"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
     json["voxel"] = report.voxel;
     json["clearance"] = report.clearance;
     json["candidates"] = report.candidates;
@@ -49,7 +50,8 @@ int runPlace(const PlaceOptions& options, const Context& context)
     else
     {
         std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
-                  << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area " << 100.0f * report.coverageArea << " %\n"
+                  << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area "
+                  << 100.0f * report.coverageArea << " %\n"
                   << "reachable space: " << report.reachableVolume << " m^3, cells of " << report.voxel << " m\n"
                   << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
     }
@@ -66,7 +68,9 @@ void addPlaceCommand(CLI::App& app, Context& context)
     options->scene.add(command);
     command->add_option("-o,--output", options->output, "probes.json to write (required)")->required()->type_name("FILE");
     const std::map<std::string, PlaceSettings::Method> methods{{"sdf", PlaceSettings::Method::sdf}, {"grid", PlaceSettings::Method::grid}};
-    command->add_option("--method", settings.method, "sdf: skeleton of the distance field; grid: uniform grid in the reachable space (default: sdf)")
+    command
+        ->add_option("--method", settings.method,
+                     "sdf: skeleton of the distance field; grid: uniform grid in the reachable space (default: sdf)")
         ->transform(CLI::CheckedTransformer(methods))
         ->type_name("sdf|grid");
     command
@@ -84,7 +88,10 @@ void addPlaceCommand(CLI::App& app, Context& context)
     command->add_option("--count", settings.count, "Probes (default: sdf the fewest that reach --coverage, grid 64; range: 1 to 65535)")
         ->check(CLI::Range(1u, kMostProbes))
         ->type_name("N");
-    command->add_option("--coverage", settings.coverage, "Share of the surface points that rays hit which some probe must see, when --count is not given (default: 0.995; range: 0.01 to 1)")
+    command
+        ->add_option("--coverage", settings.coverage,
+                     "Share of the surface points that rays hit which some probe must see, when --count is not given (default: 0.995; "
+                     "range: 0.01 to 1)")
         ->check(CLI::Range(0.01f, 1.0f))
         ->type_name("F");
     command
@@ -103,8 +110,13 @@ void addPlaceCommand(CLI::App& app, Context& context)
         ->expected(1)
         ->take_all()
         ->type_name("X,Y,Z");
-    command->add_option("--seed", settings.seed, "Of every random choice; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")->type_name("N");
-    command->add_option("--clearance", settings.clearance, "Least distance of a probe from every surface, sdf, metres (default: one cell of the distance field; range: 0 to 1000)")
+    command
+        ->add_option("--seed", settings.seed, "Of every random choice; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")
+        ->type_name("N");
+    command
+        ->add_option(
+            "--clearance", settings.clearance,
+            "Least distance of a probe from every surface, sdf, metres (default: one cell of the distance field; range: 0 to 1000)")
         ->check(CLI::Range(0.0f, 1000.0f))
         ->type_name("METRES");
     onChosen(command, context, options, runPlace);

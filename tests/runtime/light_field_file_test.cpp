@@ -90,7 +90,7 @@ void expectSame(const FieldData& a, const FieldData& b)
 {
     EXPECT_EQ(std::memcmp(&a.info, &b.info, sizeof(a.info)), 0);
     ASSERT_EQ(a.probes.size(), b.probes.size());
-    if (!a.probes.empty()) EXPECT_EQ(std::memcmp(a.probes.data(), b.probes.data(), a.probes.size() * sizeof(gpu::ProbeHeader)), 0);
+    EXPECT_TRUE(a.probes.empty() || std::memcmp(a.probes.data(), b.probes.data(), a.probes.size() * sizeof(gpu::ProbeHeader)) == 0);
     EXPECT_EQ(a.distance, b.distance);
     EXPECT_EQ(a.radiance, b.radiance);
     EXPECT_EQ(a.irradiance, b.irradiance);

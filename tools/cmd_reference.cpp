@@ -1,0 +1,184 @@
+// sconce reference and compare: the path-traced truth, and how far a picture is from it.
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "bench/metrics.h"
+#include "bench/reference.h"
+#include "tools/pictures.h"
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+const std::vector<std::string> kReferenceLayers = {"beauty", "direct", "diffuse_indirect", "glossy_indirect",
+                                                   "depth",  "normal", "albedo",           "roughness"};
+
+struct ReferenceOptions
+{
+    SceneOptions scene;
+    CameraOptions camera;
+    PictureOptions pictures;
+    ReferenceSettings settings;
+};
+
+int runReference(const ReferenceOptions& options, const Context& context)
+{
+    const Stopwatch watch;
+    if (const std::string problem = options.pictures.problem(kReferenceLayers); !problem.empty())
+        return fail(ErrorCode::badArgument, problem);
+    const Result<Scene> scene = options.scene.load(context);
+    if (!scene) return fail(scene.error());
+    const Result<Camera> camera = options.camera.choose(*scene);
+    if (!camera) return fail(camera.error());
+    ReferenceSettings settings = options.settings;
+    settings.camera = *camera;
+    Result<Reference> reference = renderReference(*scene, settings, consoleProgress(context));
+    if (!reference) return fail(reference.error());
+    if (reference->nonFinitePaths > 0)
+        note(context, "Note: " + std::to_string(reference->nonFinitePaths) + " paths were not finite and were left out.");
+    Json json;
+    json["spp"] = settings.samples;
+    json["bounces"] = settings.bounces;
+    json["estimated_relmse"] = reference->estimatedRelMse;
+    json["non_finite_paths"] = reference->nonFinitePaths;
+    if (Status status = options.pictures.write(std::move(reference->images), json); !status) return fail(status.error());
+    addCost(json, watch);
+    if (context.json)
+        print(json);
+    else
+        std::cout << options.pictures.output << ": " << settings.width << "x" << settings.height << ", " << settings.samples
+                  << " paths a pixel, estimated relMSE " << json["estimated_relmse"] << ", " << json["seconds"] << " s, "
+                  << json["peak_rss_mb"] << " MB" << std::endl;
+    return exitOk;
+}
+
+struct CompareOptions
+{
+    std::string picture, reference, metrics = "mse,relmse,psnr,flip", diff, layer = "beauty";
+    std::vector<std::string> limits;
+    std::optional<float> exposure;
+};
+
+int runCompare(const CompareOptions& options, const Context& context)
+{
+    CompareSettings settings;
+    settings.layer = options.layer;
+    settings.exposure = options.exposure;
+    std::map<std::string, bool*> wanted{
+        {"mse", &settings.mse}, {"relmse", &settings.relMse}, {"psnr", &settings.psnr}, {"flip", &settings.flip}};
+    for (auto& [name, flag] : wanted) *flag = false;
+    for (const std::string& name : split(options.metrics, ','))
+    {
+        if (!wanted.contains(name))
+            return fail(ErrorCode::badArgument, "--metric: there is no metric '" + name + "'; there are mse, relmse, psnr, flip.");
+        *wanted[name] = true;
+    }
+    std::vector<std::pair<std::string, float>> limits;
+    for (const std::string& limit : options.limits)
+    {
+        const std::vector<std::string> parts = split(limit, '=');
+        const Result<std::vector<float>> value = parseNumbers(parts.back(), {1});
+        if (parts.size() != 2 || !wanted.contains(parts[0]) || !value)
+            return fail(ErrorCode::badArgument,
+                        "--fail-above: '" + limit + "' is not METRIC=X with a metric of mse, relmse, psnr, flip and a number.");
+        *wanted[parts[0]] = true;
+        limits.emplace_back(parts[0], value->front());
+    }
+
+    const Result<ImageSet> picture = readExr(options.picture);
+    if (!picture) return fail(picture.error());
+    const Result<ImageSet> reference = readExr(options.reference);
+    if (!reference) return fail(reference.error());
+    const Result<CompareResult> result = compareImages(*picture, *reference, settings);
+    if (!result) return fail(result.error());
+    if (!options.diff.empty())
+        if (Status status = writeErrorMap(*result, options.diff); !status) return fail(status.error());
+
+    const std::pair<const char*, std::optional<double>> values[] = {
+        {"mse", result->mse}, {"relmse", result->relMse}, {"psnr", result->psnr}, {"flip", result->flip}};
+    Json json;
+    json["width"] = result->width;
+    json["height"] = result->height;
+    json["layer"] = options.layer;
+    json["non_finite_pixels"] = result->nonFinitePixels;
+    for (const auto& [name, value] : values)
+        if (value) json[name] = *value; // psnr of equal pictures is infinite: null
+    json["missed"] = Json::array();
+    bool missed = false;
+    for (const auto& [name, limit] : limits)
+        for (const auto& [metric, value] : values)
+            if (metric == name && !(name == "psnr" ? *value >= limit : *value <= limit)) // not a number misses, too
+            {
+                missed = true;
+                json["missed"].push_back(name);
+                if (!context.quiet) std::cerr << "sconce: " << name << " is " << *value << ", the limit is " << limit << "." << std::endl;
+            }
+    if (context.json)
+        print(json);
+    else
+        for (const auto& [name, value] : values)
+            if (value) std::cout << name << " " << *value << (std::string(name) == "psnr" ? " dB" : "") << std::endl;
+    return missed ? exitThreshold : exitOk;
+}
+
+} // namespace
+
+void addReferenceCommands(CLI::App& app, Context& context)
+{
+    CLI::App* reference = addCommand(app, context, "reference", "Path traces a picture: the truth that others are compared with");
+    auto options = std::make_shared<ReferenceOptions>();
+    ReferenceSettings& settings = options->settings;
+    options->scene.add(reference);
+    options->camera.add(reference);
+    addSize(reference, settings.width, settings.height);
+    reference
+        ->add_option("--spp", settings.samples,
+                     "Paths a pixel; noise falls with the square root, time grows in proportion (default: 64; range: 1 to 1048576)")
+        ->check(CLI::Range(1u, 1048576u))
+        ->type_name("N");
+    reference->add_option("--bounces", settings.bounces, "As of bake: a path scatters at most N+2 times (default: 2; range: 0 to 64)")
+        ->check(CLI::Range(0u, 64u))
+        ->type_name("N");
+    reference->add_option("--roughness", settings.roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
+        ->check(CLI::Range(0.0f, 1.0f))
+        ->type_name("R");
+    reference->add_option("--seed", settings.seed, "Of the paths; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")
+        ->type_name("N");
+    reference->add_flag("--pixel-centre", settings.pixelCentre,
+                        "Every path starts at its pixel's centre as a rasteriser's, edges are not smoothed (default: off)");
+    options->pictures.add(reference, kReferenceLayers);
+    onChosen(reference, context, options, runReference);
+
+    CLI::App* compare =
+        addCommand(app, context, "compare", "Measures how far a picture is from a reference; exit 1 when a limit is missed");
+    auto compareOptions = std::make_shared<CompareOptions>();
+    compare->add_option("PICTURE", compareOptions->picture, "EXR that is judged")->required()->type_name("");
+    compare->add_option("REFERENCE", compareOptions->reference, "EXR that is the truth")->required()->type_name("");
+    compare
+        ->add_option("--metric", compareOptions->metrics,
+                     "Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), separated by commas (default: all)")
+        ->type_name("LIST");
+    compare
+        ->add_option("--fail-above", compareOptions->limits,
+                     "Exit 1 when the metric is above X (psnr: below X); may be given again (default: no limit)")
+        ->expected(1)
+        ->take_all()
+        ->type_name("METRIC=X");
+    compare->add_option("--layer", compareOptions->layer, "Layer that is compared (default: beauty)")->type_name("NAME");
+    compare
+        ->add_option(
+            "--exposure", compareOptions->exposure,
+            "For psnr and flip (default: psnr from the reference's log-average, flip over a sweep of exposures; range: 1e-6 to 1e6)")
+        ->check(CLI::Range(1e-6f, 1e6f))
+        ->type_name("FACTOR");
+    compare
+        ->add_option("-o,--output", compareOptions->diff,
+                     "PNG of the error in false colours: flip, or relative error without flip (default: none)")
+        ->type_name("FILE");
+    onChosen(compare, context, compareOptions, runCompare);
+}
+
+} // namespace sconce::tools

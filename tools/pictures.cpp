@@ -1,0 +1,65 @@
+#include "tools/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+std::string joined(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+    return text;
+}
+
+} // namespace
+
+void PictureOptions::add(CLI::App* command, const std::vector<std::string>& layers)
+{
+    command->add_option("-o,--output", output, "EXR to write, 32-bit float, linear radiance (required)")->required()->type_name("FILE");
+    command->add_option("--aov", aov, "Layers to write, separated by commas (default: all that are at hand; of " + joined(layers) + ")")
+        ->type_name("LIST");
+    command->add_option("--png", png, "Also writes the beauty layer as it looks: exposure, ACES tone map, sRGB (default: none)")
+        ->type_name("FILE");
+    command
+        ->add_option("--exposure", exposure,
+                     "Factor before the tone map of --png (default: from the picture's log-average; range: 1e-6 to 1e6)")
+        ->check(CLI::Range(1e-6f, 1e6f))
+        ->type_name("FACTOR");
+}
+
+std::string PictureOptions::problem(const std::vector<std::string>& layers) const
+{
+    if (aov.empty()) return {};
+    for (const std::string& name : split(aov, ','))
+        if (std::ranges::find(layers, name) == layers.end())
+            return "--aov: there is no layer '" + name + "' here; there are " + joined(layers) + ".";
+    return {};
+}
+
+Status PictureOptions::write(ImageSet images, Json& json) const
+{
+    json["width"] = images.width;
+    json["height"] = images.height;
+    if (const Layer* beauty = images.find("beauty"))
+    {
+        const float used = exposure.value_or(autoExposure(beauty->pixels));
+        json["exposure"] = used;
+        if (!png.empty())
+            if (Status status = writePng(toneMap(beauty->pixels, used), images.width, images.height, png); !status) return status;
+    }
+    if (!aov.empty())
+    {
+        const std::vector<std::string> wanted = split(aov, ',');
+        std::erase_if(images.layers, [&](const Layer& layer) { return std::ranges::find(wanted, layer.name) == wanted.end(); });
+    }
+    json["layers"] = Json::array();
+    for (const Layer& layer : images.layers) json["layers"].push_back(layer.name);
+    return writeExr(images, output);
+}
+
+} // namespace sconce::tools

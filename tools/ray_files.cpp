@@ -1,0 +1,112 @@
+#include "tools/ray_files.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "runtime/safe_file.h"
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+constexpr const char* kRaysHeader = "ox,oy,oz,dx,dy,dz";
+constexpr const char* kHitsHeader = "status,t,x,y,z,nx,ny,nz,r,g,b,probe,handoffs,distance_fetches,index_fetches";
+
+/// One number, which may be followed by spaces; false when it is not one. Beyond the range of float it becomes infinite or zero.
+bool parseNumber(const char*& at, const char* end, float& value)
+{
+    while (at != end && (*at == ' ' || *at == '\t')) ++at;
+    if (at != end && *at == '+') ++at;
+    double number = 0.0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error == std::errc::result_out_of_range)
+        number = next[-1] == '0' ? 0.0 : std::numeric_limits<double>::infinity();
+    else if (error != std::errc{})
+        return false;
+    value = float(number);
+    at = next;
+    while (at != end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+    return true;
+}
+
+void append(std::string& text, float value)
+{
+    char digits[32];
+    const auto [end, error] = std::to_chars(digits, digits + sizeof(digits), std::isfinite(value) ? value : 0.0f);
+    text += ',';
+    text.append(digits, end);
+}
+
+void append(std::string& text, vec3 v)
+{
+    append(text, v.x), append(text, v.y), append(text, v.z);
+}
+
+} // namespace
+
+Result<std::vector<Ray>> readRays(const std::filesystem::path& file)
+{
+    std::ifstream stream(file);
+    std::string line;
+    if (!stream || !std::getline(stream, line))
+        return Error{ErrorCode::fileError,
+                     "Cannot read rays from '" + file.string() + "'; give a CSV file with a header and a ray a line."};
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line != kRaysHeader)
+        return Error{ErrorCode::badInput, "Rays file '" + file.string() + "' begins with '" + line.substr(0, 60) +
+                                              "' instead of the header " + kRaysHeader + "."};
+    std::vector<Ray> rays;
+    for (size_t number = 2; std::getline(stream, line); ++number)
+    {
+        if (line.empty() || line == "\r") continue;
+        Ray ray;
+        const char *at = line.data(), *end = line.data() + line.size();
+        bool good = true;
+        for (int column = 0; column < 6 && good; ++column)
+        {
+            float& value = column < 3 ? ray.origin[column] : ray.direction[column - 3];
+            good = (column == 0 || (at != end && *at++ == ',')) && parseNumber(at, end, value);
+        }
+        if (!good || at != end)
+            return Error{ErrorCode::badInput, "Line " + std::to_string(number) + " of '" + file.string() + "' is '" + line.substr(0, 60) +
+                                                  "' instead of six numbers separated by commas."};
+        rays.push_back(ray);
+    }
+    if (stream.bad())
+        return Error{ErrorCode::fileError, "Reading '" + file.string() + "' failed after " + std::to_string(rays.size()) + " rays."};
+    return rays;
+}
+
+Status writeHits(std::span<const RayHit> hits, const std::filesystem::path& file)
+{
+    static constexpr const char* kNames[] = {"miss", "hit", "unknown"};
+    Result<SafeFile> target = SafeFile::create(file);
+    if (!target) return target.error();
+    std::string text = std::string(kHitsHeader) + "\n";
+    const auto flush = [&]
+    {
+        const Status status = target->append(std::as_bytes(std::span(text)));
+        text.clear();
+        return status;
+    };
+    for (const RayHit& hit : hits)
+    {
+        text += kNames[uint32_t(hit.status)];
+        append(text, hit.t);
+        append(text, hit.position);
+        append(text, hit.normal);
+        append(text, hit.radiance);
+        for (const int count : {hit.probe, hit.handoffs, hit.distanceFetches, hit.indexFetches}) text += ',' + std::to_string(count);
+        text += '\n';
+        if (text.size() > (1u << 20))
+            if (Status status = flush(); !status) return status;
+    }
+    if (Status status = flush(); !status) return status;
+    return target->commit();
+}
+
+} // namespace sconce::tools
