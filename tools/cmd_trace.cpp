@@ -30,13 +30,13 @@ bool finite(vec3 v)
 }
 
 /// What shading uses where a ray ended unresolved: the last surfel it met, else the light that the nearest leaf's best probe saw that way.
-vec3 fallbackRadiance(const Twin& text, const Twin::TraceResult& result, vec3 direction, vec3 point, int& reads)
+vec3 fallbackRadiance(Twin& text, const Twin::TraceResult& result, vec3 direction, vec3 point, int& reads)
 {
     if (result.face >= 0) return text.surfelRadiance(result);
     return text.probeIrradiance(text.rankedProbesAt(point, reads).x, direction);
 }
 
-RayHit traceOne(const Twin& text, const Ray& ray, bool baseline)
+RayHit traceOne(Twin& text, const Ray& ray, bool baseline)
 {
     const gpu::LightFieldInfo& info = text.field;
     RayHit out;
@@ -87,7 +87,6 @@ int runTrace(const TraceOptions& options, const Context& context)
         return fail(ErrorCode::badInput, "Tracer ours needs cube probes; '" + options.field +
                                              "' has octahedral ones. Bake with --chart cube, or give --tracer b0plus.");
 
-    const Twin text(*field, Quality{}.trace);
     std::vector<RayHit> hits(rays->size());
     constexpr size_t kBatch = 1024;
     const Progress progress = consoleProgress(context);
