@@ -21,7 +21,8 @@ int runScenes(const NoOptions&, const Context& context)
     for (const BuiltinScene& scene : builtinScenes())
     {
         list.push_back({{"name", scene.name}, {"description", scene.description}});
-        if (!context.json) std::cout << scene.name << std::string(scene.name.size() < 16 ? 16 - scene.name.size() : 1, ' ') << scene.description << "\n";
+        if (!context.json)
+            std::cout << scene.name << std::string(scene.name.size() < 16 ? 16 - scene.name.size() : 1, ' ') << scene.description << "\n";
     }
     if (context.json) print(list);
     std::cout << std::flush;

@@ -1,6 +1,5 @@
 // sconce trace: rays through a light field, on the CPU with the shaders' own text.
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 
 #include "runtime/light_field_file.h"
@@ -22,59 +21,12 @@ struct TraceOptions
     bool cpu = false;
 };
 
-using Twin = twin::LightFieldTwin<float>;
-
-bool finite(vec3 v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-/// What shading uses where a ray ended unresolved: the last surfel it met, else the light that the nearest leaf's best probe saw that way.
-vec3 fallbackRadiance(Twin& text, const Twin::TraceResult& result, vec3 direction, vec3 point, int& reads)
-{
-    if (result.face >= 0) return text.surfelRadiance(result);
-    return text.probeIrradiance(text.rankedProbesAt(point, reads).x, direction);
-}
-
-RayHit traceOne(Twin& text, const Ray& ray, bool baseline)
-{
-    const gpu::LightFieldInfo& info = text.field;
-    RayHit out;
-    out.radiance = info.sky;
-    // Scaled first, so that neither a tiny nor a huge direction is lost on the way to unit length.
-    const float largest = std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
-    if (!finite(ray.origin) || !finite(ray.direction) || !(largest > 0.0f))
-    {
-        out.position = finite(ray.origin) ? ray.origin : vec3(0.0f);
-        return out;
-    }
-    const vec3 direction = glm::normalize(ray.direction / largest);
-    const vec3 origin = (ray.origin - vec3(info.origin)) / info.scale;
-    const Twin::TraceResult result = baseline ? text.b0TraceRay(origin, direction) : text.traceRay(origin, direction);
-    out.status = HitStatus(result.status); // kMiss, kHit, kUnknown are numbered alike
-    out.t = result.t * info.scale;
-    out.position = ray.origin + out.t * direction;
-    out.probe = result.probe == gpu::kNoProbe ? -1 : int(result.probe);
-    out.handoffs = result.handoffs;
-    out.distanceFetches = result.distanceReads;
-    out.indexFetches = result.indexReads;
-    if (out.status == HitStatus::hit)
-    {
-        out.normal = baseline ? text.unpackNormal8(result.word >> 16) : text.texelNormal(result.face, result.pixel, result.word);
-        out.radiance = baseline ? text.b0Radiance(result) : text.surfelRadiance(result);
-    }
-    else if (out.status == HitStatus::unknown && !baseline)
-        out.radiance = fallbackRadiance(text, result, direction, origin + result.t * direction, out.indexFetches);
-    if (!finite(out.position)) out.position = ray.origin;
-    return out;
-}
-
 int runTrace(const TraceOptions& options, const Context& context)
 {
     const Stopwatch watch;
     const Result<FieldData> field = loadField(options.field);
     if (!field) return fail(field.error());
-    const Result<std::vector<Ray>> rays = readRays(options.rays);
+    const Result<std::vector<gpu::Ray>> rays = readRays(options.rays);
     if (!rays) return fail(rays.error());
     const bool baseline = options.tracer == "b0plus";
     const gpu::LightFieldInfo& info = field->info;
@@ -87,7 +39,7 @@ int runTrace(const TraceOptions& options, const Context& context)
         return fail(ErrorCode::badInput, "Tracer ours needs cube probes; '" + options.field +
                                              "' has octahedral ones. Bake with --chart cube, or give --tracer b0plus.");
 
-    std::vector<RayHit> hits(rays->size());
+    std::vector<gpu::RayHit> hits(rays->size());
     constexpr size_t kBatch = 1024;
     const Progress progress = consoleProgress(context);
     const Stopwatch tracing;
@@ -99,7 +51,12 @@ int runTrace(const TraceOptions& options, const Context& context)
                     [&](size_t batch)
                     {
                         const size_t begin = first + batch * kBatch, end = std::min(begin + kBatch, first + count);
-                        for (size_t i = begin; i < end; ++i) hits[i] = traceOne(text, (*rays)[i], baseline);
+                        twin::LightFieldTwin<float> text(*field, Quality{}.trace);
+                        for (size_t i = begin; i < end; ++i)
+                        {
+                            const gpu::Ray& ray = (*rays)[i];
+                            hits[i] = baseline ? text.b0QueryRay(ray.origin, ray.direction) : text.queryRay(ray.origin, ray.direction);
+                        }
                     });
     }
     const double traceSeconds = tracing.seconds();
@@ -108,10 +65,10 @@ int runTrace(const TraceOptions& options, const Context& context)
 
     size_t counts[3] = {};
     double fetches = 0.0, handoffs = 0.0;
-    for (const RayHit& hit : hits)
+    for (const gpu::RayHit& hit : hits)
     {
-        ++counts[uint32_t(hit.status)];
-        fetches += hit.distanceFetches;
+        ++counts[hit.status];
+        fetches += hit.distanceReads;
         handoffs += hit.handoffs;
     }
     const double n = std::max<double>(1.0, double(hits.size()));

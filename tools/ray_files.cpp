@@ -1,8 +1,10 @@
 #include "tools/ray_files.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "runtime/safe_file.h"
@@ -33,6 +35,13 @@ bool parseNumber(const char*& at, const char* end, float& value)
     return true;
 }
 
+/// Scaled first, so that neither a tiny nor a huge direction is lost on the way to unit length.
+glm::vec3 unitOrZero(glm::vec3 d)
+{
+    const float largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    return std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z) && largest > 0.0f ? glm::normalize(d / largest) : glm::vec3(0.0f);
+}
+
 void append(std::string& text, float value)
 {
     char digits[32];
@@ -41,14 +50,14 @@ void append(std::string& text, float value)
     text.append(digits, end);
 }
 
-void append(std::string& text, vec3 v)
+void append(std::string& text, glm::vec3 v)
 {
     append(text, v.x), append(text, v.y), append(text, v.z);
 }
 
 } // namespace
 
-Result<std::vector<Ray>> readRays(const std::filesystem::path& file)
+Result<std::vector<gpu::Ray>> readRays(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
     std::string line;
@@ -59,11 +68,11 @@ Result<std::vector<Ray>> readRays(const std::filesystem::path& file)
     if (line != kRaysHeader)
         return Error{ErrorCode::badInput, "Rays file '" + file.string() + "' begins with '" + line.substr(0, 60) +
                                               "' instead of the header " + kRaysHeader + "."};
-    std::vector<Ray> rays;
+    std::vector<gpu::Ray> rays;
     for (size_t number = 2; std::getline(stream, line); ++number)
     {
         if (line.empty() || line == "\r") continue;
-        Ray ray;
+        gpu::Ray ray{};
         const char *at = line.data(), *end = line.data() + line.size();
         bool good = true;
         for (int column = 0; column < 6 && good; ++column)
@@ -74,6 +83,7 @@ Result<std::vector<Ray>> readRays(const std::filesystem::path& file)
         if (!good || at != end)
             return Error{ErrorCode::badInput, "Line " + std::to_string(number) + " of '" + file.string() + "' is '" + line.substr(0, 60) +
                                                   "' instead of six numbers separated by commas."};
+        ray.direction = unitOrZero(ray.direction);
         rays.push_back(ray);
     }
     if (stream.bad())
@@ -81,9 +91,9 @@ Result<std::vector<Ray>> readRays(const std::filesystem::path& file)
     return rays;
 }
 
-Status writeHits(std::span<const RayHit> hits, const std::filesystem::path& file)
+Status writeHits(std::span<const gpu::RayHit> hits, const std::filesystem::path& file)
 {
-    static constexpr const char* kNames[] = {"miss", "hit", "unknown"};
+    static constexpr const char* kNames[] = {"miss", "hit", "unknown"}; // in the order of gpu::RayHit::status;
     Result<SafeFile> target = SafeFile::create(file);
     if (!target) return target.error();
     std::string text = std::string(kHitsHeader) + "\n";
@@ -93,14 +103,15 @@ Status writeHits(std::span<const RayHit> hits, const std::filesystem::path& file
         text.clear();
         return status;
     };
-    for (const RayHit& hit : hits)
+    for (const gpu::RayHit& hit : hits)
     {
-        text += kNames[uint32_t(hit.status)];
+        text += kNames[hit.status];
         append(text, hit.t);
         append(text, hit.position);
         append(text, hit.normal);
         append(text, hit.radiance);
-        for (const int count : {hit.probe, hit.handoffs, hit.distanceFetches, hit.indexFetches}) text += ',' + std::to_string(count);
+        for (const int count : {hit.probe == gpu::kNoProbe ? -1 : int(hit.probe), hit.handoffs, hit.distanceReads, hit.indexReads})
+            text += ',' + std::to_string(count);
         text += '\n';
         if (text.size() > (1u << 20))
             if (Status status = flush(); !status) return status;
