@@ -1,0 +1,299 @@
+// The command as its users meet it: exit codes, sentences, help, JSON, files.
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/run_command.h"
+
+using namespace sconce::testing_support;
+using nlohmann::json;
+
+namespace
+{
+
+const std::vector<std::string> kCommands = {"scenes", "doctor", "check", "place",     "bake",   "info",
+                                            "verify", "render", "trace", "reference", "compare"};
+
+/// stdout as JSON; a failure prints everything there was.
+json jsonOf(const CommandResult& result)
+{
+    const json document = json::parse(result.out, nullptr, false);
+    EXPECT_FALSE(document.is_discarded()) << "exit " << result.exit << "\n" << result.out << "\n" << result.err;
+    return document;
+}
+
+/// A sentence for people: one line that begins as the command's do and ends as a sentence does.
+void expectSentence(const CommandResult& result, int exit, const std::string& part)
+{
+    EXPECT_EQ(result.exit, exit) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_TRUE(result.err.ends_with(".\n")) << result.err;
+    EXPECT_TRUE(result.out.empty()) << result.out;
+}
+
+std::vector<std::vector<std::string>> csvRows(const std::string& text)
+{
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+    {
+        rows.emplace_back();
+        std::istringstream cells(line);
+        for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+    }
+    return rows;
+}
+
+} // namespace
+
+TEST(Command, HelpOfEveryOptionStatesItsDefault)
+{
+    const CommandResult overview = sconceCommand({"--help"});
+    EXPECT_EQ(overview.exit, 0);
+    for (const std::string& command : kCommands)
+    {
+        EXPECT_NE(overview.out.find("\n  " + command + " "), std::string::npos) << command;
+        const CommandResult help = sconceCommand({command, "--help"});
+        EXPECT_EQ(help.exit, 0) << command;
+        std::istringstream lines(help.out);
+        std::string option;
+        const auto check = [&]
+        {
+            if (option.empty() || option.starts_with("  -h,--help")) return;
+            EXPECT_TRUE(option.find("default") != std::string::npos || option.find("required") != std::string::npos ||
+                        option.find("needed with") != std::string::npos)
+                << command << ": " << option;
+        };
+        for (std::string line; std::getline(lines, line);)
+        {
+            if (line.starts_with("  -"))
+            {
+                check();
+                option.clear();
+            }
+            if (line.starts_with("  -") || !option.empty()) option += line;
+        }
+        check();
+    }
+    EXPECT_NE(sconceCommand({"--version"}).out.find('.'), std::string::npos);
+}
+
+TEST(Command, WrongUsageExitsWith2)
+{
+    const std::vector<std::vector<std::string>> wrong = {
+        {},
+        {"frobnicate"},
+        {"check"},
+        {"place", "cornell"},
+        {"place", "cornell", "-o", "x.json", "--method", "magic"},
+        {"place", "cornell", "-o", "x.json", "--grid", "4x4"},
+        {"place", "cornell", "-o", "x.json", "--inside", "1,2"},
+        {"place", "cornell", "-o", "x.json", "--count", "-1"},
+        {"check", "cornell", "--sun", "0,0,0"},
+        {"check", "cornell", "--sky", "1,nan,1"},
+        {"check", "cornell", "--sky=-1,0,0"},
+        {"bake", "cornell", "--probes", "p.json", "-o", "x.sconce", "--resolution", "100"},
+        {"reference", "cornell", "-o", "x.exr", "--size", "0x10"},
+        {"reference", "cornell", "-o", "x.exr", "--aov", "nonsense"},
+        {"reference", "cornell", "-o", "x.exr", "--eye", "0,1,0"},
+        {"reference", "cornell", "-o", "x.exr", "--camera", "nowhere"},
+        {"compare", "a.exr", "b.exr", "--metric", "beauty"},
+        {"compare", "a.exr", "b.exr", "--fail-above", "flip"},
+        {"trace", "f.sconce", "--rays", "r.csv", "-o", "h.csv", "--tracer", "magic"},
+    };
+    for (const std::vector<std::string>& arguments : wrong)
+    {
+        const CommandResult result = sconceCommand(arguments);
+        std::string line;
+        for (const std::string& argument : arguments) line += " " + argument;
+        EXPECT_EQ(result.exit, 2) << "sconce" << line << "\n" << result.err;
+        EXPECT_FALSE(result.err.empty()) << line;
+        EXPECT_TRUE(result.out.empty()) << line << "\n" << result.out;
+    }
+}
+
+TEST(Command, BadInputExitsWith3AndNamesIt)
+{
+    const TestFolder folder;
+    expectSentence(sconceCommand({"check", "nowhere"}), 3, "nowhere");
+    writeText(folder / "broken.gltf", "{ not json");
+    expectSentence(sconceCommand({"check", folder / "broken.gltf"}), 3, "broken.gltf");
+    writeText(folder / "broken.sconce", "rubbish");
+    expectSentence(sconceCommand({"info", folder / "broken.sconce"}), 3, "broken.sconce");
+    EXPECT_EQ(sconceCommand({"verify", folder / "broken.sconce"}).exit, 3);
+    writeText(folder / "broken.json", "[1, 2");
+    expectSentence(sconceCommand({"bake", "cornell", "--probes", folder / "broken.json", "-o", folder / "x.sconce", "-q"}), 3,
+                   "broken.json");
+}
+
+TEST(Command, FilesThatCannotBeReadOrWrittenExitWith5)
+{
+    const TestFolder folder;
+    expectSentence(sconceCommand({"info", folder / "none.sconce"}), 5, "none.sconce");
+    expectSentence(sconceCommand({"verify", folder / "none.sconce"}), 5, "none.sconce");
+    expectSentence(sconceCommand({"bake", "cornell", "--probes", folder / "none.json", "-o", folder / "x.sconce", "-q"}), 5, "none.json");
+    expectSentence(sconceCommand({"compare", folder / "none.exr", folder / "none.exr"}), 5, "none.exr");
+    expectSentence(sconceCommand({"place", "cornell", "--grid", "1x1x1", "-o", folder / "no_folder/p.json", "-q"}), 5, "no_folder");
+}
+
+TEST(Command, ScenesListsTheBuiltInOnes)
+{
+    const json list = jsonOf(sconceCommand({"scenes", "--json"}));
+    std::vector<std::string> names;
+    for (const json& scene : list) names.push_back(scene.at("name"));
+    EXPECT_EQ(names, (std::vector<std::string>{"cornell", "cornell-glossy", "temple", "hall", "town"}));
+    const std::string text = sconceCommand({"scenes"}).out;
+    for (const std::string& name : names) EXPECT_NE(text.find(name), std::string::npos);
+}
+
+TEST(Command, CheckTellsWhatIsInAScene)
+{
+    const json report = jsonOf(sconceCommand({"check", "cornell", "--json"}));
+    EXPECT_GT(report.at("triangles").get<int>(), 30);
+    EXPECT_FALSE(report.at("effects").empty());
+    for (const json& effect : report.at("effects"))
+    {
+        EXPECT_TRUE(effect.at("called").is_boolean());
+        EXPECT_FALSE(effect.at("why").get<std::string>().empty());
+    }
+    const json sunny = jsonOf(sconceCommand({"check", "cornell", "--json", "--sun=-1,-2,0,3,3,3", "--sky", "1,1,1"}));
+    for (const json& effect : sunny.at("effects"))
+        if (effect.at("name") == "sun" || effect.at("name") == "sky") EXPECT_TRUE(effect.at("called").get<bool>()) << effect;
+    EXPECT_FALSE(sconceCommand({"check", "cornell"}).out.empty());
+}
+
+TEST(Command, DoctorListsDevices)
+{
+    const CommandResult result = sconceCommand({"doctor", "--json"});
+    const json report = jsonOf(result);
+    bool usable = false;
+    for (const json& device : report.at("devices")) usable = usable || device.at("usable").get<bool>();
+    EXPECT_EQ(result.exit, usable ? 0 : 4);
+}
+
+// The whole way once, small: place, bake, info, verify, trace, damage.
+TEST(Command, PipelineFromSceneToHits)
+{
+    const TestFolder folder;
+    const json placed = jsonOf(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "6", "--json"}));
+    EXPECT_EQ(placed.at("probes"), 6);
+    EXPECT_GT(placed.at("seconds").get<double>(), 0.0);
+    EXPECT_GT(placed.at("peak_rss_mb").get<double>(), 1.0);
+    const json probes = json::parse(readText(folder / "p.json"));
+    ASSERT_EQ(probes.at("probes").size(), 6u);
+    EXPECT_EQ(probes.at("probes")[0].at("position").size(), 3u);
+
+    const CommandResult bake = sconceCommand(
+        {"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "128", "--bounces", "1", "--json"},
+        120.0);
+    ASSERT_EQ(bake.exit, 0) << bake.err;
+    EXPECT_GT(jsonOf(bake).at("peak_rss_mb").get<double>(), 1.0);
+
+    const json info = jsonOf(sconceCommand({"info", folder / "f.sconce", "--json"}));
+    EXPECT_EQ(info.at("probes"), 6);
+    EXPECT_EQ(info.at("resolution"), 128);
+    EXPECT_EQ(info.at("face_size"), 64);
+    EXPECT_EQ(info.at("bounces"), 1);
+    EXPECT_TRUE(info.at("effects").is_array());
+    const json& bytes = info.at("bytes");
+    EXPECT_EQ(bytes.at("total").get<size_t>(), bytes.at("distance").get<size_t>() + bytes.at("normals").get<size_t>() +
+                                                   bytes.at("radiance").get<size_t>() + bytes.at("irradiance").get<size_t>() +
+                                                   bytes.at("index").get<size_t>());
+    EXPECT_EQ(bytes.at("radiance").get<size_t>(), 6u * 6 * 64 * 64 * 4);
+    for (const char* key : {"leaves", "nodes", "depth"}) EXPECT_GT(info.at("octree").at(key).get<int>(), 0) << key;
+
+    EXPECT_EQ(jsonOf(sconceCommand({"verify", folder / "f.sconce", "--json"})).at("ok"), true);
+    std::string damaged = readText(folder / "f.sconce");
+    damaged[damaged.size() / 2] ^= 4;
+    writeText(folder / "bad.sconce", damaged);
+    const CommandResult verify = sconceCommand({"verify", folder / "bad.sconce", "--json"});
+    EXPECT_EQ(verify.exit, 3);
+    EXPECT_EQ(jsonOf(verify).at("ok"), false);
+
+    // From a probe straight down: the floor. And rays that are none.
+    const json& position = probes.at("probes")[0].at("position");
+    std::ostringstream rays;
+    rays << "ox,oy,oz,dx,dy,dz\n" << position[0] << "," << position[1] << "," << position[2] << ",0,-3,0\n";
+    const size_t odd = 6;
+    rays << "0,1,0,nan,0,0\n0,1,0,0,0,0\n0,1,0,inf,0,0\nnan,0,0,0,1,0\n1e39,1e-60,0,1,0,0\n0,1,0,1e38,-1e38,1e-38\n";
+    writeText(folder / "rays.csv", rays.str());
+    const CommandResult trace =
+        sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits.csv", "--json", "--cpu"});
+    ASSERT_EQ(trace.exit, 0) << trace.err;
+    const auto rows = csvRows(readText(folder / "hits.csv"));
+    ASSERT_EQ(rows.size(), 2 + odd);
+    EXPECT_EQ(readText(folder / "hits.csv").substr(0, readText(folder / "hits.csv").find('\n')),
+              "status,t,x,y,z,nx,ny,nz,r,g,b,probe,handoffs,distance_fetches,index_fetches");
+    for (size_t i = 1; i < rows.size(); ++i)
+    {
+        ASSERT_EQ(rows[i].size(), 15u);
+        for (size_t c = 1; c < 15; ++c) EXPECT_TRUE(std::isfinite(std::stod(rows[i][c]))) << i << ": " << rows[i][c];
+    }
+    EXPECT_EQ(rows[1][0], "hit");
+    EXPECT_NEAR(std::stod(rows[1][2]), position[0].get<double>(), 1e-3);
+    EXPECT_NEAR(std::stod(rows[1][1]), position[1].get<double>() - std::stod(rows[1][3]),
+                1e-3); // t is metres though the direction is not unit
+    EXPECT_EQ(rows[2][0], "miss");
+
+    writeText(folder / "rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,0,1,0,0\n0,0,zero,1,0,0\n");
+    expectSentence(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits2.csv", "-q"}), 3,
+                   "Line 3");
+    writeText(folder / "rays.csv", "x,y,z\n");
+    expectSentence(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits2.csv", "-q"}), 3,
+                   "header");
+    EXPECT_FALSE(std::filesystem::exists(folder / "hits2.csv"));
+}
+
+TEST(Command, ReferenceAndCompareAgree)
+{
+    const TestFolder folder;
+    const CommandResult made = sconceCommand(
+        {"reference", "cornell", "-o", folder / "a.exr", "--png", folder / "a.png", "--size", "24x16", "--spp", "4", "--json"});
+    ASSERT_EQ(made.exit, 0) << made.err;
+    const json reference = jsonOf(made);
+    EXPECT_EQ(reference.at("width"), 24);
+    EXPECT_EQ(reference.at("layers").size(), 8u);
+    EXPECT_GT(reference.at("exposure").get<double>(), 0.0);
+    EXPECT_EQ(readText(folder / "a.png").substr(1, 3), "PNG");
+    ASSERT_EQ(sconceCommand(
+                  {"reference", "cornell", "-o", folder / "b.exr", "--size", "24x16", "--spp", "4", "--seed", "2", "--aov", "beauty", "-q"})
+                  .exit,
+              0);
+
+    const json same = jsonOf(sconceCommand({"compare", folder / "a.exr", folder / "a.exr", "--json", "--fail-above", "flip=0"}));
+    EXPECT_EQ(same.at("mse"), 0.0);
+    EXPECT_TRUE(same.at("psnr").is_null()); // infinite
+    const CommandResult other =
+        sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--metric", "mse,flip", "--json", "-o", folder / "diff.png"});
+    EXPECT_EQ(other.exit, 0);
+    EXPECT_GT(jsonOf(other).at("mse").get<double>(), 0.0);
+    EXPECT_FALSE(jsonOf(other).contains("psnr"));
+    EXPECT_EQ(readText(folder / "diff.png").substr(1, 3), "PNG");
+    EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--fail-above", "mse=1e-12"}).exit, 1);
+    EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--fail-above", "psnr=500"}).exit, 1);
+    EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--fail-above", "flip=1", "--fail-above", "mse=1e9"}).exit, 0);
+    EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--layer", "normal"}).exit, 3);
+}
+
+TEST(Command, InterruptExitsWith130AndWritesNothing)
+{
+    const TestFolder folder;
+    const CommandResult result =
+        sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "640x360", "--spp", "100000"}, 60.0, 1.0);
+    EXPECT_EQ(result.exit, 130) << result.err;
+    EXPECT_FALSE(result.timedOut);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
+}
+
+TEST(Command, QuietSaysNothingOnStderr)
+{
+    const TestFolder folder;
+    const CommandResult result = sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "8x8", "--spp", "1", "--quiet"});
+    EXPECT_EQ(result.exit, 0);
+    EXPECT_EQ(result.err, "");
+    const CommandResult loud = sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "8x8", "--spp", "1"});
+    EXPECT_NE(loud.err.find("100 %"), std::string::npos);
+    EXPECT_EQ(loud.err.find('\r'), std::string::npos); // no bar where there is no terminal
+}

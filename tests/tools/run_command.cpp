@@ -1,0 +1,91 @@
+#include "tests/tools/run_command.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace sconce::testing_support
+{
+
+CommandResult sconceCommand(const std::vector<std::string>& arguments, double limitSeconds, double interruptAfter)
+{
+    using Clock = std::chrono::steady_clock;
+    const TestFolder folder;
+    const std::string outFile = folder / "out", errFile = folder / "err";
+    std::vector<char*> argv{const_cast<char*>(SCONCE_COMMAND)};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        const int out = open(outFile.c_str(), O_CREAT | O_WRONLY, 0600), err = open(errFile.c_str(), O_CREAT | O_WRONLY, 0600);
+        if (out < 0 || err < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(126);
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+    CommandResult result;
+    const auto start = Clock::now();
+    int status = 0;
+    bool interrupted = interruptAfter <= 0.0;
+    while (waitpid(child, &status, WNOHANG) == 0)
+    {
+        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        if (!interrupted && seconds >= interruptAfter)
+        {
+            interrupted = true;
+            kill(child, SIGINT);
+        }
+        if (seconds >= limitSeconds)
+        {
+            result.timedOut = true;
+            kill(child, SIGKILL);
+            waitpid(child, &status, 0);
+            break;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (WIFEXITED(status)) result.exit = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
+    result.out = readText(outFile);
+    result.err = readText(errFile);
+    return result;
+}
+
+TestFolder::TestFolder()
+{
+    std::string name = (std::filesystem::temp_directory_path() / "sconce_test_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) std::abort();
+    path = name;
+}
+
+TestFolder::~TestFolder()
+{
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+}
+
+std::string readText(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void writeText(const std::filesystem::path& file, const std::string& text)
+{
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << text;
+}
+
+std::filesystem::path scenesFolder()
+{
+    const char* folder = std::getenv("SCONCE_SCENES");
+    return folder != nullptr && *folder != '\0' ? folder : SCONCE_SCENES_DEFAULT;
+}
+
+} // namespace sconce::testing_support

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace sconce::testing_support
+{
+
+struct CommandResult
+{
+    int exit = -1;  // -1: it did not exit by itself
+    int signal = 0; // that ended it
+    bool timedOut = false;
+    std::string out, err;
+};
+
+/// Runs the `sconce` command of this build. @param interruptAfter seconds until it gets SIGINT; 0: never
+CommandResult sconceCommand(const std::vector<std::string>& arguments, double limitSeconds = 60.0, double interruptAfter = 0.0);
+
+/// A folder of the test's own, empty at first, removed at the end.
+class TestFolder
+{
+public:
+    TestFolder();
+    ~TestFolder();
+    std::filesystem::path path;
+    std::string operator/(const std::string& name) const { return (path / name).string(); }
+};
+
+std::string readText(const std::filesystem::path& file);
+void writeText(const std::filesystem::path& file, const std::string& text);
+
+/// Folder of the real scenes: the environment's SCONCE_SCENES, else the configured one; may not exist.
+std::filesystem::path scenesFolder();
+
+} // namespace sconce::testing_support
