@@ -170,21 +170,21 @@ void addFieldCommands(CLI::App& app, Context& context)
     bake->add_option("--resolution", settings.resolution,
                      "Side of an octahedral map in texels; the cube chart's faces have half of it; memory grows with its square (default: "
                      "512; range: 64 to 2048, power of two)")
-        ->check(CLI::IsMember({64, 128, 256, 512, 1024, 2048}))
+        ->check(unlisted(CLI::IsMember({64, 128, 256, 512, 1024, 2048})))
         ->type_name("TEXELS");
     bake->add_option("--bounces", settings.bounces,
                      "Times the baked light is re-injected; each costs one more pass over every probe (default: 2; range: 0 to 8)")
-        ->check(CLI::Range(0u, 8u))
+        ->check(unlisted(CLI::Range(0u, 8u)))
         ->type_name("N");
     const std::map<std::string, uint32_t> charts{{"cube", gpu::kChartCube}, {"octahedral", gpu::kChartOctahedral}};
     bake->add_option("--chart", settings.chart,
                      "cube: six faces a probe; octahedral: one map a probe, for the b0plus tracer (default: cube)")
-        ->transform(CLI::CheckedTransformer(charts))
+        ->transform(unlisted(CLI::CheckedTransformer(charts)))
         ->type_name("cube|octahedral");
     bake->add_option("--memory", options->memoryMb,
                      "Budget of device memory, MiB; too little is refused with the number needed (default: 80 % of the device's; range: 1 "
                      "to 1048576)")
-        ->check(CLI::Range(uint64_t(1), uint64_t(1) << 20))
+        ->check(unlisted(CLI::Range(uint64_t(1), uint64_t(1) << 20)))
         ->type_name("MIB");
     addDevice(bake, options->device);
     onChosen(bake, context, options, runBake);

@@ -71,7 +71,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
     command
         ->add_option("--method", settings.method,
                      "sdf: skeleton of the distance field; grid: uniform grid in the reachable space (default: sdf)")
-        ->transform(CLI::CheckedTransformer(methods))
+        ->transform(unlisted(CLI::CheckedTransformer(methods)))
         ->type_name("sdf|grid");
     command
         ->add_option_function<std::string>(
@@ -86,13 +86,13 @@ void addPlaceCommand(CLI::App& app, Context& context)
             "Probes along each axis of the grid; implies --method grid (default: chosen from --count; range: product 1 to 65535)")
         ->type_name("NxNxN");
     command->add_option("--count", settings.count, "Probes (default: sdf the fewest that reach --coverage, grid 64; range: 1 to 65535)")
-        ->check(CLI::Range(1u, kMostProbes))
+        ->check(unlisted(CLI::Range(1u, kMostProbes)))
         ->type_name("N");
     command
         ->add_option("--coverage", settings.coverage,
                      "Share of the surface points that rays hit which some probe must see, when --count is not given (default: 0.995; "
                      "range: 0.01 to 1)")
-        ->check(CLI::Range(0.01f, 1.0f))
+        ->check(unlisted(CLI::Range(0.01f, 1.0f)))
         ->type_name("F");
     command
         ->add_option_function<std::vector<std::string>>(
@@ -117,7 +117,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
         ->add_option(
             "--clearance", settings.clearance,
             "Least distance of a probe from every surface, sdf, metres (default: one cell of the distance field; range: 0 to 1000)")
-        ->check(CLI::Range(0.0f, 1000.0f))
+        ->check(unlisted(CLI::Range(0.0f, 1000.0f)))
         ->type_name("METRES");
     onChosen(command, context, options, runPlace);
 }

@@ -137,13 +137,13 @@ void addReferenceCommands(CLI::App& app, Context& context)
     reference
         ->add_option("--spp", settings.samples,
                      "Paths a pixel; noise falls with the square root, time grows in proportion (default: 64; range: 1 to 1048576)")
-        ->check(CLI::Range(1u, 1048576u))
+        ->check(unlisted(CLI::Range(1u, 1048576u)))
         ->type_name("N");
     reference->add_option("--bounces", settings.bounces, "As of bake: a path scatters at most N+2 times (default: 2; range: 0 to 64)")
-        ->check(CLI::Range(0u, 64u))
+        ->check(unlisted(CLI::Range(0u, 64u)))
         ->type_name("N");
     reference->add_option("--roughness", settings.roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
-        ->check(CLI::Range(0.0f, 1.0f))
+        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
         ->type_name("R");
     reference->add_option("--seed", settings.seed, "Of the paths; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")
         ->type_name("N");
@@ -172,7 +172,7 @@ void addReferenceCommands(CLI::App& app, Context& context)
         ->add_option(
             "--exposure", compareOptions->exposure,
             "For psnr and flip (default: psnr from the reference's log-average, flip over a sweep of exposures; range: 1e-6 to 1e6)")
-        ->check(CLI::Range(1e-6f, 1e6f))
+        ->check(unlisted(CLI::Range(1e-6f, 1e6f)))
         ->type_name("FACTOR");
     compare
         ->add_option("-o,--output", compareOptions->diff,

@@ -102,7 +102,7 @@ void addTraceCommand(CLI::App& app, Context& context)
     command
         ->add_option("--tracer", options->tracer,
                      "ours, or b0plus: the uniform-grid baseline, which needs a grid of octahedral probes (default: ours)")
-        ->check(CLI::IsMember({"ours", "b0plus"}))
+        ->check(unlisted(CLI::IsMember({"ours", "b0plus"})))
         ->type_name("ours|b0plus");
     command->add_flag("--cpu", options->cpu, "Trace on the CPU; it runs the same text as the device (default: on)");
     onChosen(command, context, options, runTrace);

@@ -49,7 +49,8 @@ CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, c
 int fail(const Error& error)
 {
     endProgress();
-    std::cerr << "sconce: " << error.message << std::endl;
+    const bool ended = error.message.ends_with('.') || error.message.ends_with('!');
+    std::cerr << "sconce: " << error.message << (ended ? "" : ".") << std::endl;
     return exitCode(error.code);
 }
 
@@ -317,7 +318,7 @@ void CameraOptions::add(CLI::App* command)
     addVec3(command, "--eye", eye, "Where the camera is, metres (default: the scene's camera)");
     addVec3(command, "--target", target, "What it looks at, metres; needed with --eye");
     command->add_option("--fov", fov, "Vertical field of view with --eye, degrees (default: 60; range: 1 to 170)")
-        ->check(CLI::Range(1.0f, 170.0f))
+        ->check(unlisted(CLI::Range(1.0f, 170.0f)))
         ->type_name("DEGREES");
 }
 

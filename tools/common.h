@@ -68,6 +68,12 @@ Result<std::vector<float>> parseNumbers(const std::string& text, std::initialize
 /// "1280x720" or "8x4x8": positive integers up to 65,535.
 Result<std::vector<uint32_t>> parseSize(const std::string& text, size_t count);
 
+/// A check whose bounds the description states already, in words.
+template <class Check> CLI::Validator unlisted(Check check)
+{
+    return check.description("");
+}
+
 /// An option of numbers; a bad value is a usage error that names the option.
 void addVec3(CLI::App* command, const std::string& name, std::optional<vec3>& target, const std::string& description);
 void addSize(CLI::App* command, uint32_t& width, uint32_t& height);

@@ -28,7 +28,7 @@ void PictureOptions::add(CLI::App* command, const std::vector<std::string>& laye
     command
         ->add_option("--exposure", exposure,
                      "Factor before the tone map of --png (default: from the picture's log-average; range: 1e-6 to 1e6)")
-        ->check(CLI::Range(1e-6f, 1e6f))
+        ->check(unlisted(CLI::Range(1e-6f, 1e6f)))
         ->type_name("FACTOR");
 }
 
