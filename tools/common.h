@@ -121,6 +121,7 @@ std::vector<std::string> split(const std::string& text, char separator);
 
 void addSceneCommands(CLI::App& app, Context& context);
 void addPlaceCommand(CLI::App& app, Context& context);
+void addBakeCommand(CLI::App& app, Context& context);
 void addFieldCommands(CLI::App& app, Context& context);
 void addRenderCommand(CLI::App& app, Context& context);
 void addTraceCommand(CLI::App& app, Context& context);

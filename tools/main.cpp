@@ -17,7 +17,6 @@ int main(int argc, char** argv)
     addSceneCommands(app, context);
     addPlaceCommand(app, context);
     addFieldCommands(app, context);
-    addRenderCommand(app, context);
     addTraceCommand(app, context);
     addReferenceCommands(app, context);
     addDoctorCommand(app, context);

@@ -1,0 +1,88 @@
+// sconce bake: the light field of a scene at given probes.
+#include <iostream>
+
+#include "placement/probe_set.h"
+#include "runtime/bake.h"
+#include "runtime/light_field_file.h"
+#include "tools/field_report.h"
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+struct BakeOptions
+{
+    SceneOptions scene;
+    BakeSettings settings;
+    std::string probes, output, device;
+    uint64_t memoryMb = 0;
+};
+
+int runBake(const BakeOptions& options, const Context& context)
+{
+    const Stopwatch watch;
+    const Result<ProbeSet> set = loadProbes(options.probes);
+    if (!set) return fail(set.error());
+    const Result<Scene> scene = options.scene.load(context);
+    if (!scene) return fail(scene.error());
+    const Result<OwnDevice> device = OwnDevice::create({.device = options.device, .memoryBudget = options.memoryMb << 20});
+    if (!device) return fail(device.error());
+    BakeSettings settings = options.settings;
+    settings.grid = set->grid;
+    std::vector<vec3> positions;
+    for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
+    BakeReport report;
+    Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
+    if (!field) return fail(field.error());
+    if (Status status = saveField(*field, options.output); !status) return fail(status.error());
+    if (context.json)
+    {
+        Json json = fieldJson(*field);
+        json["device"] = device->name();
+        addCost(json, watch);
+        print(json);
+    }
+    else
+    {
+        printField(*field, options.output);
+        std::cout << watch.seconds() << " s, " << peakRssMb() << " MB of host memory, on " << device->name() << std::endl;
+    }
+    return exitOk;
+}
+
+} // namespace
+
+void addBakeCommand(CLI::App& app, Context& context)
+{
+    CLI::App* bake = addCommand(app, context, "bake", "Bakes the light field of a scene at given probes");
+    auto options = std::make_shared<BakeOptions>();
+    BakeSettings& settings = options->settings;
+    options->scene.add(bake);
+    bake->add_option("--probes", options->probes, "probes.json of `sconce place` (required)")->required()->type_name("FILE");
+    bake->add_option("-o,--output", options->output, ".sconce file to write (required)")->required()->type_name("FILE");
+    bake->add_option("--resolution", settings.resolution,
+                     "Side of an octahedral map in texels; the cube chart's faces have half of it; memory grows with its square (default: "
+                     "512; range: 64 to 2048, power of two)")
+        ->check(unlisted(CLI::IsMember({64, 128, 256, 512, 1024, 2048})))
+        ->type_name("TEXELS");
+    bake->add_option("--bounces", settings.bounces,
+                     "Times the baked light is re-injected; each costs one more pass over every probe (default: 2; range: 0 to 8)")
+        ->check(unlisted(CLI::Range(0u, 8u)))
+        ->type_name("N");
+    const std::map<std::string, uint32_t> charts{{"cube", gpu::kChartCube}, {"octahedral", gpu::kChartOctahedral}};
+    bake->add_option("--chart", settings.chart,
+                     "cube: six faces a probe; octahedral: one map a probe, for the b0plus tracer (default: cube)")
+        ->transform(unlisted(CLI::CheckedTransformer(charts)))
+        ->type_name("cube|octahedral");
+    bake->add_option("--memory", options->memoryMb,
+                     "Budget of device memory, MiB; too little is refused with the number needed (default: 80 % of the device's; range: 1 "
+                     "to 1048576)")
+        ->check(unlisted(CLI::Range(uint64_t(1), uint64_t(1) << 20)))
+        ->type_name("MIB");
+    addDevice(bake, options->device);
+    onChosen(bake, context, options, runBake);
+}
+
+} // namespace sconce::tools
