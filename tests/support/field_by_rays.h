@@ -14,6 +14,9 @@ namespace sconce::testing_support
 /// @param positions world, metres
 FieldData fieldByRays(const RayScene& scene, std::span<const glm::vec3> positions, uint32_t faceSize, const OctreeSettings& octree = {});
 
+/// A uniform grid of octahedral probes for the baselines, cast the same way. Probe (x,y,z) lies at origin + step * (x,y,z), world metres.
+FieldData gridByRays(const RayScene& scene, glm::ivec3 count, glm::vec3 origin, glm::vec3 step, uint32_t size);
+
 /// Tracing settings of the medium quality.
 gpu::TraceQuality defaultQuality();
 

@@ -1,0 +1,40 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "lights.glsl"
+#include "gbuffer_read.glsl"
+
+// Direct light of the frame: what a surface emits, and the shadowed light of the sun and of punctual lights; the sky where nothing is.
+// Emitters and the sky light surfaces through the light field. Dispatch: ceil(width/8) x ceil(height/8).
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 1, binding = 4) uniform texture2D gEmission;
+layout(set = 1, binding = 5) uniform texture2D gGeometricNormal;
+layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D direct; // rgb radiance to the eye
+layout(scalar, push_constant) uniform Push
+{
+    vec3 origin;  // of field space, world metres
+    float scale;  // metres per field unit
+    vec3 sky;     // W/(m^2 sr)
+    uint lightCount; // delta lights at the front of the list
+};
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
+    Pixel p = readPixel(at);
+    vec3 light = sky;
+    if (p.surface)
+    {
+        light = texelFetch(gEmission, at, 0).rgb;
+        vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
+        vec3 point = (p.position - origin) / scale;
+        for (uint i = 0u; i < lightCount; ++i)
+        {
+            LightSample s = lightAt(i, point, geometric);
+            BrdfValue f = evaluateBrdf(p.brdf, p.normal, p.view, s.toLight);
+            light += s.irradiance * max(dot(p.normal, s.toLight), 0.0) * (f.diffuse + f.specular);
+        }
+    }
+    imageStore(direct, at, vec4(light, 1.0));
+}

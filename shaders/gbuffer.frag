@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "material.glsl"
+
+// See gbuffer.vert. Normals are turned to the viewer's side: every surface has two.
+layout(location = 0) in vec3 relative;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) flat in uint material;
+layout(location = 0) out vec4 outNormalRoughness;
+layout(location = 1) out vec4 outBaseColorMetallic;
+layout(location = 2) out vec4 outEmission;
+layout(location = 3) out vec4 outGeometricNormal;
+layout(constant_id = 0) const float kRoughnessOverride = -1.0; // >= 0: every surface has this roughness
+
+void main()
+{
+    vec2 uvDx = dFdx(uv), uvDy = dFdy(uv);
+    vec3 across = dFdx(relative), down = dFdy(relative);
+    if (!isThere(material, uv, uvDx, uvDy)) discard;
+    SurfacePoint point = evaluateMaterial(material, uv, uvDx, uvDy);
+    vec3 view = normalize(-relative);
+    vec3 geometric = normalize(cross(across, down));
+    if (dot(geometric, view) < 0.0) geometric = -geometric;
+    vec3 shading = normalize(normal);
+    if (dot(shading, geometric) < 0.0) shading = -shading;
+    if (dot(shading, view) <= 0.0) shading = geometric; // interpolated away from the eye
+    outNormalRoughness = vec4(shading, kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness);
+    outBaseColorMetallic = vec4(point.baseColor.rgb, point.metallic);
+    outEmission = vec4(point.emission, 1.0);
+    outGeometricNormal = vec4(geometric, 0.0);
+}
