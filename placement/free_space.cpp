@@ -16,11 +16,13 @@ namespace
 {
 
 constexpr uint32_t kNoRegion = 0xffffffffu;
+constexpr size_t kNoCell = ~size_t(0);
 
 /// What the rays from one point meet.
 struct Surroundings
 {
     float around = 0.0f; // share of the rays between the horizon and 60 degrees up that hit
+    float below = 0.0f;  // share of the rays within 45 degrees of straight down that hit
     float all = 0.0f;    // share of all rays that hit
     float backs = 0.0f;  // share of the hits that are on the backs of single-sided surfaces
 };
@@ -45,24 +47,35 @@ const std::array<vec3, 96>& sphereDirections()
 
 Surroundings lookAround(const Visibility& visibility, vec3 point)
 {
-    int hits = 0, backs = 0, level = 0, levelHits = 0;
+    int hits = 0, backs = 0, around = 0, aroundHits = 0, below = 0, belowHits = 0;
     for (const vec3& direction : sphereDirections())
     {
         RayHit hit;
         const bool met = visibility.cast(point, direction, hit);
-        const bool isLevel = direction.y > 0.0f && direction.y < 0.8660254f;
+        const bool isAround = direction.y > 0.0f && direction.y < 0.8660254f;
+        const bool isBelow = direction.y < -0.7071068f;
         hits += met;
         backs += met && hit.back;
-        level += isLevel;
-        levelHits += isLevel && met;
+        around += isAround;
+        aroundHits += isAround && met;
+        below += isBelow;
+        belowHits += isBelow && met;
     }
-    return {float(levelHits) / float(level), float(hits) / float(sphereDirections().size()), hits ? float(backs) / float(hits) : 0.0f};
+    return {float(aroundHits) / float(around), float(belowHits) / float(below), float(hits) / float(sphereDirections().size()),
+            hits ? float(backs) / float(hits) : 0.0f};
 }
 
-bool keeps(const Surroundings& seen, bool mindBacks)
+/// Rule 3 for one point.
+struct Enclosure
 {
-    return seen.around >= kEnclosedShare && (!mindBacks || seen.backs <= 0.5f);
-}
+    float leastAround = kEnclosedShare;
+    bool mindBacks = true;
+
+    bool keeps(const Surroundings& seen) const
+    {
+        return seen.around >= leastAround && seen.below >= kGroundShare && (!mindBacks || seen.backs <= 0.5f);
+    }
+};
 
 /// The scene's box, raised so that low scenes have air above them.
 Bounds fillBox(const Bounds& scene)
@@ -78,6 +91,25 @@ Bounds fillBox(const Bounds& scene)
     return box;
 }
 
+/// Visits the cells joined to the open ones through faces, of those that `enters` lets in; `enters` has to mark what it lets in.
+template <class Enters> void flood(const DistanceField& field, std::vector<uint32_t>& open, const Enters& enters)
+{
+    const size_t stride[3] = {1, size_t(field.size.x), size_t(field.size.x) * size_t(field.size.y)};
+    while (!open.empty())
+    {
+        const size_t at = open.back();
+        open.pop_back();
+        const glm::ivec3 cell = field.cell(at);
+        for (int axis = 0; axis < 3; ++axis)
+            for (int side = -1; side <= 1; side += 2)
+            {
+                if (cell[axis] + side < 0 || cell[axis] + side >= field.size[axis]) continue;
+                const size_t next = side < 0 ? at - stride[axis] : at + stride[axis];
+                if (enters(next)) open.push_back(uint32_t(next));
+            }
+    }
+}
+
 struct Regions
 {
     std::vector<uint32_t> of;   // [cells] region, or kNoRegion where not free
@@ -91,40 +123,31 @@ Regions joinFreeCells(const DistanceField& field)
     Regions regions;
     regions.of.assign(field.cells(), kNoRegion);
     std::vector<uint32_t> open;
-    const size_t stride[3] = {1, size_t(field.size.x), size_t(field.size.x) * size_t(field.size.y)};
     for (size_t first = 0; first < field.cells(); ++first)
     {
         if (regions.of[first] != kNoRegion || field.distance[first] <= blocked) continue;
         const uint32_t region = uint32_t(regions.volume.size());
-        size_t volume = 0;
+        size_t volume = 1;
         regions.of[first] = region;
-        open.push_back(uint32_t(first));
-        while (!open.empty())
-        {
-            const size_t at = open.back();
-            open.pop_back();
-            ++volume;
-            const glm::ivec3 cell = field.cell(at);
-            for (int axis = 0; axis < 3; ++axis)
-                for (int side = -1; side <= 1; side += 2)
-                {
-                    if (cell[axis] + side < 0 || cell[axis] + side >= field.size[axis]) continue;
-                    const size_t next = side < 0 ? at - stride[axis] : at + stride[axis];
-                    if (regions.of[next] != kNoRegion || field.distance[next] <= blocked) continue;
-                    regions.of[next] = region;
-                    open.push_back(uint32_t(next));
-                }
-        }
+        open.assign(1, uint32_t(first));
+        flood(field, open,
+              [&](size_t at)
+              {
+                  if (regions.of[at] != kNoRegion || field.distance[at] <= blocked) return false;
+                  regions.of[at] = region;
+                  ++volume;
+                  return true;
+              });
         regions.volume.push_back(volume);
     }
     return regions;
 }
 
-/// Region of the free cell nearest to a point, looking at most `reach` cells around it; kNoRegion when there is none.
-uint32_t regionNear(const DistanceField& field, const Regions& regions, vec3 point, int reach)
+/// The free cell nearest to a point, looking at most `reach` cells around it; kNoCell when there is none.
+size_t freeCellNear(const DistanceField& field, const Regions& regions, vec3 point, int reach)
 {
     const glm::ivec3 centre = field.cellAt(point);
-    uint32_t best = kNoRegion;
+    size_t best = kNoCell;
     float bestDistance = 0.0f;
     for (int z = -reach; z <= reach; ++z)
         for (int y = -reach; y <= reach; ++y)
@@ -133,26 +156,27 @@ uint32_t regionNear(const DistanceField& field, const Regions& regions, vec3 poi
                 const glm::ivec3 cell = centre + glm::ivec3(x, y, z);
                 if (!field.inside(cell) || regions.of[field.index(cell)] == kNoRegion) continue;
                 const float distance = glm::distance(field.centre(cell), point);
-                if (best != kNoRegion && distance >= bestDistance) continue;
-                best = regions.of[field.index(cell)];
+                if (best != kNoCell && distance >= bestDistance) continue;
+                best = field.index(cell);
                 bestDistance = distance;
             }
     return best;
 }
 
-/// A camera may stand outside the box, before the missing or culled front wall of what it looks at: the first free cell on its axis.
-uint32_t regionOfCamera(const DistanceField& field, const Regions& regions, const Camera& camera)
+/// The free cell a camera stands in. It may stand outside the box, before the missing or culled front wall of what it looks at: then the
+/// first free cell on its axis.
+size_t cellOfCamera(const DistanceField& field, const Regions& regions, const Camera& camera)
 {
-    const float far = glm::length(vec3(field.size)) * field.voxel + glm::distance(camera.eye, field.origin);
-    const bool starts = field.inside(field.cellAt(camera.eye));
-    if (starts)
-        if (const uint32_t region = regionNear(field, regions, camera.eye, 2); region != kNoRegion) return region;
-    for (float t = 0.0f; t < far; t += 0.5f * field.voxel)
+    if (field.inside(field.cellAt(camera.eye)))
+        if (const size_t cell = freeCellNear(field, regions, camera.eye, 2); cell != kNoCell) return cell;
+    const float farthest = glm::length(vec3(field.size)) * field.voxel + glm::distance(camera.eye, field.origin);
+    const int steps = int(std::min(1e6f, farthest / (0.5f * field.voxel)));
+    for (int step = 0; step < steps; ++step)
     {
-        const glm::ivec3 cell = field.cellAt(camera.eye + t * camera.forward);
-        if (field.inside(cell) && regions.of[field.index(cell)] != kNoRegion) return regions.of[field.index(cell)];
+        const glm::ivec3 cell = field.cellAt(camera.eye + 0.5f * field.voxel * float(step) * camera.forward);
+        if (field.inside(cell) && regions.of[field.index(cell)] != kNoRegion) return field.index(cell);
     }
-    return kNoRegion;
+    return kNoCell;
 }
 
 /// The region with the most volume that is enclosed: the inside of a building rather than the air around it. Enclosed volume is estimated
@@ -181,7 +205,7 @@ uint32_t mostEnclosedRegion(const DistanceField& field, const Regions& regions, 
                               RandomStream random(largest[i], sample);
                               const uint32_t at = cellsOf[i][random.below(cellsOf[i].size())];
                               const Surroundings seen = lookAround(visibility, field.centre(field.cell(at)));
-                              value[sample] = keeps(seen, true) ? seen.all * (1.0f - seen.backs) : 0.0f;
+                              value[sample] = Enclosure{}.keeps(seen) ? seen.all * (1.0f - seen.backs) : 0.0f;
                           });
         double mean = 0.0;
         for (float one : value) mean += double(one) / double(kSamples);
@@ -193,7 +217,7 @@ uint32_t mostEnclosedRegion(const DistanceField& field, const Regions& regions, 
 }
 
 /// Rule 3: keeps what is enclosed of the reached cells. Judged per block of cells, at the block's cell that is farthest from surfaces.
-void keepEnclosed(FreeSpace& space, const Visibility& visibility)
+void keepEnclosed(FreeSpace& space, float leastAround, const Visibility& visibility)
 {
     constexpr size_t kBlocks = 24000;
     const DistanceField& field = space.field;
@@ -220,16 +244,15 @@ void keepEnclosed(FreeSpace& space, const Visibility& visibility)
                       });
     for (const bool mindBacks : {true, false}) // a scene whose winding is all reversed shows backs everywhere: then winding says nothing
     {
-        size_t used = 0, kept = 0, around = 0;
+        size_t kept = 0, around = 0;
         for (size_t block = 0; block < seen.size(); ++block)
         {
-            used += widest[block] != kNoRegion;
-            around += widest[block] != kNoRegion && keeps(seen[block], false);
-            kept += widest[block] != kNoRegion && keeps(seen[block], mindBacks);
+            around += widest[block] != kNoRegion && Enclosure{leastAround, false}.keeps(seen[block]);
+            kept += widest[block] != kNoRegion && Enclosure{leastAround, mindBacks}.keeps(seen[block]);
         }
         if (kept == 0 || 5 * kept < around) continue;
         for (size_t at = 0; at < field.cells(); ++at)
-            if (space.reachable[at] && !keeps(seen[blockOf(at)], mindBacks)) space.reachable[at] = 0;
+            if (space.reachable[at] && !Enclosure{leastAround, mindBacks}.keeps(seen[blockOf(at)])) space.reachable[at] = 0;
         return;
     }
 }
@@ -250,40 +273,74 @@ void finish(FreeSpace& space)
     space.volume = double(space.cells.size()) * std::pow(double(field.voxel), 3.0);
 }
 
-/// The regions that the seeds lie in: `inside` points, else cameras, else the most enclosed one.
-Result<std::vector<uint32_t>> seedRegions(const Scene& scene, const Visibility& visibility, const DistanceField& field,
-                                          const Regions& regions, std::span<const vec3> inside)
+struct Seeds
 {
-    std::vector<uint32_t> seeds;
+    std::vector<uint32_t> cells;   // those of the given points and cameras
+    std::vector<uint32_t> regions; // where they lie, or the chosen region
+    bool indoors = false;          // all of them are
+};
+
+/// The regions that the seeds lie in: `inside` points, else cameras, else the most enclosed region.
+Result<Seeds> findSeeds(const Scene& scene, const Visibility& visibility, const DistanceField& field, const Regions& regions,
+                        std::span<const vec3> inside)
+{
+    std::vector<size_t> cells;
     for (const vec3& point : inside)
     {
-        const uint32_t region = regionNear(field, regions, point, 3);
-        if (region == kNoRegion)
-            return Error{ErrorCode::badArgument,
-                         fmt::format("The inside point ({}, {}, {}) lies in solid or outside scene '{}', whose box is ({}, {}, {}) to ({}, "
-                                     "{}, {}); give a point "
-                                     "in free space, at least {} m from surfaces.",
-                                     point.x, point.y, point.z, scene.name, field.origin.x, field.origin.y, field.origin.z,
-                                     field.origin.x + field.voxel * float(field.size.x), field.origin.y + field.voxel * float(field.size.y),
-                                     field.origin.z + field.voxel * float(field.size.z), field.voxel)};
-        seeds.push_back(region);
+        cells.push_back(freeCellNear(field, regions, point, 3));
+        if (cells.back() != kNoCell) continue;
+        const vec3 high = field.origin + field.voxel * vec3(field.size);
+        return Error{
+            ErrorCode::badArgument,
+            fmt::format("The inside point ({}, {}, {}) lies in solid or outside scene '{}', whose box is ({}, {}, {}) to ({}, {}, {}); "
+                        "give a point in free space, at least {} m from surfaces.",
+                        point.x, point.y, point.z, scene.name, field.origin.x, field.origin.y, field.origin.z, high.x, high.y, high.z,
+                        field.voxel)};
     }
-    if (seeds.empty())
+    if (cells.empty())
         for (const Camera& camera : scene.cameras)
-            if (const uint32_t region = regionOfCamera(field, regions, camera); region != kNoRegion) seeds.push_back(region);
-    if (seeds.empty() && !regions.volume.empty()) seeds.push_back(mostEnclosedRegion(field, regions, visibility));
+            if (const size_t cell = cellOfCamera(field, regions, camera); cell != kNoCell) cells.push_back(cell);
+
+    Seeds seeds;
+    seeds.indoors = !cells.empty();
+    for (size_t cell : cells)
+    {
+        seeds.cells.push_back(uint32_t(cell));
+        seeds.regions.push_back(regions.of[cell]);
+        seeds.indoors = seeds.indoors && lookAround(visibility, field.centre(field.cell(cell))).all >= kIndoors;
+    }
+    if (cells.empty() && !regions.volume.empty()) seeds.regions.push_back(mostEnclosedRegion(field, regions, visibility));
     return seeds;
 }
 
+/// Of the kept cells, only those joined to a seed through kept cells: alcoves of the roof are as enclosed as a room.
+void keepJoined(FreeSpace& space, const std::vector<uint32_t>& seeds)
+{
+    constexpr uint8_t kJoined = 2;
+    std::vector<uint32_t> open;
+    for (uint32_t at : seeds)
+        if (space.reachable[at] == 1) space.reachable[at] = kJoined, open.push_back(at);
+    if (open.empty()) return;
+    flood(space.field, open,
+          [&space](size_t at)
+          {
+              if (space.reachable[at] != 1) return false;
+              space.reachable[at] = kJoined;
+              return true;
+          });
+    for (uint8_t& kept : space.reachable) kept = kept == kJoined;
+}
+
 /// Marks the cells of the given regions and keeps the enclosed ones.
-void fill(FreeSpace& space, const Regions& regions, const std::vector<uint32_t>& seeds, const Visibility& visibility)
+void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Visibility& visibility)
 {
     std::vector<uint8_t> chosen(regions.volume.size(), 0);
-    for (uint32_t region : seeds) chosen[region] = 1;
+    for (uint32_t region : seeds.regions) chosen[region] = 1;
     space.reachable.assign(space.field.cells(), 0);
     for (size_t at = 0; at < space.field.cells(); ++at)
         if (regions.of[at] != kNoRegion) space.reachable[at] = chosen[regions.of[at]];
-    keepEnclosed(space, visibility);
+    keepEnclosed(space, seeds.indoors ? kIndoorEnclosedShare : kEnclosedShare, visibility);
+    if (seeds.indoors) keepJoined(space, seeds.cells);
     finish(space);
 }
 
@@ -311,11 +368,13 @@ Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility
     if (!report(progress, "distance field", 0.0)) return cancelled;
     space.field = buildDistanceField(scene, visibility.presence(), box, voxels);
     if (!report(progress, "free space", 0.0)) return cancelled;
+    bool indoors = false;
     {
         const Regions regions = joinFreeCells(space.field);
-        const Result<std::vector<uint32_t>> seeds = seedRegions(scene, visibility, space.field, regions, inside);
+        const Result<Seeds> seeds = findSeeds(scene, visibility, space.field, regions, inside);
         if (!seeds) return seeds.error();
-        if (seeds->empty()) return nothing;
+        if (seeds->regions.empty()) return nothing;
+        indoors = seeds->indoors;
         fill(space, regions, *seeds, visibility);
     }
     if (space.cells.empty()) return nothing;
@@ -333,12 +392,13 @@ Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility
         space.field = buildDistanceField(scene, visibility.presence(), room, voxels);
         if (!report(progress, "free space", 0.5)) return cancelled;
         const Regions regions = joinFreeCells(space.field);
-        std::vector<uint32_t> seeds;
+        Seeds seeds{{}, {}, indoors};
         for (uint32_t at : coarse.cells)
         {
             const glm::ivec3 cell = space.field.cellAt(coarse.field.centre(coarse.field.cell(at)));
-            if (space.field.inside(cell) && regions.of[space.field.index(cell)] != kNoRegion)
-                seeds.push_back(regions.of[space.field.index(cell)]);
+            if (!space.field.inside(cell) || regions.of[space.field.index(cell)] == kNoRegion) continue;
+            seeds.cells.push_back(uint32_t(space.field.index(cell)));
+            seeds.regions.push_back(regions.of[seeds.cells.back()]);
         }
         fill(space, regions, seeds, visibility);
         if (space.cells.empty()) return nothing;

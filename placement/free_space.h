@@ -21,10 +21,13 @@ class RandomStream;
 ///    surface, however thin, can't both be free, so walls thinner than a cell still separate.
 /// 2. Free cells are joined through faces. Those joined to a seed count: the `--inside` points, else the cameras, else the region with the
 ///    most enclosed volume.
-/// 3. Open scenes: the fill ends at the scene's box, raised a little. Of what it reaches, a cell is kept when at least
-///    kEnclosedShare of its rays between the horizon and 60 degrees above it hit something, so courts, streets and roofless halls are kept,
-///    while a bare plane around a house, the air above the roofs and the outside of a box are not; and when not most of its hits are on the
-///    backs of single-sided surfaces (the underside of a terrain). If no cell is enclosed, the whole reached space is kept.
+/// 3. Open scenes: the fill ends at the scene's box, raised a little. Of what it reaches, a cell is kept when it is enclosed: at least
+///    kEnclosedShare of its rays between the horizon and 60 degrees above it hit something, and kGroundShare of those within 45 degrees of
+///    straight down; and when not most of its hits are on the backs of single-sided surfaces (the underside of a terrain). So courts,
+///    streets and roofless halls are kept, while a bare plane around a house, the air above the roofs and the void around a building are
+///    not. If every seed is indoors (kIndoors of all its rays hit), so is the space: kIndoorEnclosedShare holds
+///    instead, and cells join a seed through kept cells only; a seed in the garden keeps the garden. If no cell is enclosed, the whole
+///    reached space is kept.
 struct FreeSpace
 {
     DistanceField field;
@@ -49,6 +52,9 @@ struct FreeSpace
 
 inline constexpr float kBlocked = 0.51f;       // cells; a little above one half, for rounding
 inline constexpr float kEnclosedShare = 0.12f; // of the rays between the horizon and 60 degrees up
+inline constexpr float kIndoorEnclosedShare = 0.6f;
+inline constexpr float kIndoors = 0.99f;    // of all rays
+inline constexpr float kGroundShare = 0.4f; // of the rays within 45 degrees of straight down; one half at the open front of a box
 inline constexpr uint32_t kDefaultVoxels = 12u << 20;
 
 /// @param inside  world points, metres, that say which space counts; empty: the cameras, else the largest enclosed region

@@ -16,8 +16,8 @@ namespace sconce
 /// the step from the worst view to the best. Whole numbers, so that sums are the same in any order.
 struct ViewTable
 {
-    static constexpr uint8_t kSeen = 128;
-    static constexpr uint8_t kBetter = 127;
+    static constexpr uint8_t kSeen = 232;
+    static constexpr uint8_t kBetter = 23;
     size_t surfels = 0;
     std::vector<uint8_t> values; // [candidates][surfels]
 

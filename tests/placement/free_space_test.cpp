@@ -96,6 +96,30 @@ TEST(FreeSpace, RoomOnAWidePlaneIsTheRoom)
     EXPECT_LT(space.field.voxel, 0.2f) << "cells were spent on the plane";
 }
 
+// A closed room with a small window, and outer walls that make the outside look half enclosed.
+TEST(FreeSpace, SeedIndoorsKeepsIndoorsAndASeedInTheYardKeepsTheYard)
+{
+    Scene scene = emptyScene();
+    scene.materials[0].doubleSided = true;
+    addQuad(scene, {-6, 0, -6}, {0, 0, 12}, {12, 0, 0});
+    addCrate(scene, {-2, 0.01f, -2}, {2, 3, 2});
+    // A window in the wall at x = 2.
+    scene.triangles.erase(scene.triangles.begin() + 4, scene.triangles.begin() + 6);
+    scene.triangleMaterial.resize(scene.triangles.size());
+    for (const float z : {-2.0f, 0.3f}) addQuad(scene, {2, 0.01f, z}, {0, 3, 0}, {0, 0, 1.7f});
+    for (const float y : {0.01f, 1.8f}) addQuad(scene, {2, y, -0.3f}, {0, 1.2f, 0}, {0, 0, 0.6f});
+    addQuad(scene, {-6, 0, -6}, {12, 0, 0}, {0, 2, 0}), addQuad(scene, {-6, 0, 6}, {12, 0, 0}, {0, 2, 0});
+    addQuad(scene, {-6, 0, -6}, {0, 0, 12}, {0, 2, 0}), addQuad(scene, {6, 0, -6}, {0, 0, 12}, {0, 2, 0});
+    const FreeSpace house = spaceOf(scene, {{-1.5f, 1.5f, -1.5f}}, 400000);
+    EXPECT_TRUE(house.contains({0, 1.5f, 0}));
+    EXPECT_FALSE(house.contains({4, 1, 3}));
+    EXPECT_LT(house.bounds.high.x, 3.0f);
+    const FreeSpace both = spaceOf(scene, {{-1.5f, 1.5f, -1.5f}, {4, 1, 3}}, 400000);
+    EXPECT_TRUE(both.contains({0, 1.5f, 0}));
+    EXPECT_TRUE(both.contains({4, 1, 3}));
+    EXPECT_FALSE(both.contains({0, 3.3f, 0})) << "the air above the roof";
+}
+
 TEST(FreeSpace, UndersideOfATerrainDoesNotCount)
 {
     // A sheet with its front upward, walls around the yard above it, and a cellar of backs below.

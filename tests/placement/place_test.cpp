@@ -1,10 +1,14 @@
 #include "placement/place.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "scene/builtin_scenes.h"
+#include "scene/scene_gltf.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -198,6 +202,43 @@ TEST(PlaceProbes, CancellingEndsTheWork)
     ASSERT_FALSE(set);
     EXPECT_EQ(set.error().code, ErrorCode::cancelled);
     EXPECT_EQ(calls, 4);
+}
+
+// The yardstick: plain greedy cover over 1,500 random free points sees 99.64 % with 54 probes (measured apart from this project).
+TEST(PlaceProbes, SponzaIsSeenBy54Probes)
+{
+    const char* folder = std::getenv("SCONCE_SCENES");
+    const std::filesystem::path file = std::filesystem::path(folder ? folder : SCONCE_SCENES_DEFAULT) / "sponza" / "Sponza.gltf";
+    if (!std::filesystem::exists(file.parent_path())) GTEST_SKIP() << "the scene sponza is not in " << file.parent_path();
+    const auto scene = loadGltf(file);
+    ASSERT_TRUE(scene) << scene.error().message;
+    PlaceSettings settings;
+    settings.count = 54;
+    settings.voxels = 4u << 20;
+    settings.candidates = 2000;
+    settings.surfels = 20000;
+    PlaceReport report;
+    const ProbeSet set = placed(*scene, settings, report);
+    ASSERT_EQ(set.probes.size(), 54u);
+    EXPECT_GE(report.coverageRays, 0.993f);
+    // The atrium and its arcades, not the roof and the outside: the scene's box is 51 x 21 x 31 m.
+    EXPECT_LT(report.reachable.size().x, 40.0f);
+    EXPECT_LT(report.reachable.size().z, 20.0f);
+}
+
+// Within the same time: better than a uniform grid of the same count in the same bounds.
+TEST(PlaceProbes, TempleIsSeenBetterThanByAGrid)
+{
+    const auto scene = makeBuiltinScene("temple");
+    ASSERT_TRUE(scene) << scene.error().message;
+    PlaceSettings settings = quick(16);
+    PlaceReport ours, grid;
+    placed(*scene, settings, ours);
+    settings.method = PlaceSettings::Method::grid;
+    const ProbeSet uniform = placed(*scene, settings, grid);
+    EXPECT_LE(uniform.probes.size(), 18u);
+    EXPECT_GT(ours.coverageRays, 0.98f);
+    EXPECT_GT(ours.coverageRays, grid.coverageRays);
 }
 
 } // namespace
