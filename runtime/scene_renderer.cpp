@@ -1,0 +1,373 @@
+#include "runtime/scene_renderer.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "spirv/compose_comp.h"
+#include "spirv/direct_comp.h"
+#include "spirv/gbuffer_frag.h"
+#include "spirv/gbuffer_vert.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
+
+struct DirectPush
+{
+    vec3 origin;
+    float scale;
+    vec3 sky;
+    uint32_t lightCount;
+};
+
+struct CameraBasis
+{
+    vec3 right, up, forward; // right and up scaled by the tangents of the half angles
+};
+
+CameraBasis basisOf(const Camera& camera, uint32_t width, uint32_t height)
+{
+    const float tangent = std::tan(0.5f * camera.verticalFov);
+    CameraBasis basis;
+    basis.forward = glm::normalize(camera.forward);
+    const vec3 right = glm::normalize(glm::cross(basis.forward, camera.up));
+    basis.right = right * tangent * float(width) / float(height);
+    basis.up = glm::cross(right, basis.forward) * tangent;
+    return basis;
+}
+
+/// x right, y down, depth near / W.
+SceneView viewOf(const Camera& camera, const CameraBasis& basis, const gpu::LightFieldInfo& space)
+{
+    const vec3 x = basis.right / glm::dot(basis.right, basis.right), y = -basis.up / glm::dot(basis.up, basis.up), w = basis.forward;
+    SceneView view;
+    view.clip = mat4(vec4(x.x, y.x, 0, w.x), vec4(x.y, y.y, 0, w.y), vec4(x.z, y.z, 0, w.z), vec4(0, 0, kNear, 0));
+    view.centre = (camera.eye - space.origin) / space.scale;
+    return view;
+}
+
+/// The inverse: world * depth = eye * depth + scale * near * (forward + x right - y up), and w = depth.
+mat4 worldFromClip(const Camera& camera, const CameraBasis& basis, const gpu::LightFieldInfo& space)
+{
+    const float s = space.scale * kNear;
+    return mat4(vec4(s * basis.right, 0), vec4(-s * basis.up, 0), vec4(camera.eye, 1), vec4(s * basis.forward, 0));
+}
+
+} // namespace
+
+Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
+                               uint32_t pushBytes, VkDescriptorSetLayout first)
+{
+    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    bindings.insert(bindings.end(), extra.begin(), extra.end());
+    auto made = DescriptorSet::create(gpu, bindings);
+    if (!made) return made.error();
+    set = std::move(*made);
+    constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    set.write(0, depth.view(), read);
+    set.write(1, normalRoughness.view(), read);
+    set.write(2, baseColorMetallic.view(), read);
+    set.write(3, frameBlock);
+    const VkDescriptorSetLayout layouts[] = {first, set.layout()};
+    auto built = Pipeline::compute(gpu, shader, layouts, pushBytes);
+    if (!built) return built.error();
+    pipeline = std::move(*built);
+    return success();
+}
+
+Status SceneRenderer::make()
+{
+    const IndirectEffects& effects = settings.effects;
+    auto light = IndirectLight::create(gpu, field, {settings.width, settings.height, effects, settings.glossyShader});
+    if (!light) return light.error();
+    indirect.emplace(std::move(*light));
+
+    auto image = [&](GpuImage& target, VkFormat format, VkImageUsageFlags usage, const char* what) -> Status
+    {
+        ImageDesc desc;
+        desc.format = format;
+        desc.width = settings.width;
+        desc.height = settings.height;
+        desc.usage = usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        auto made = gpu.makeImage(desc, what);
+        if (!made) return made.error();
+        target = std::move(*made);
+        return success();
+    };
+    if (auto s = image(depth, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth"); !s) return s;
+    for (auto [target, what] : {std::pair{&normalRoughness, "normals"},
+                                {&baseColorMetallic, "base colour"},
+                                {&emission, "emission"},
+                                {&geometricNormal, "geometric normals"}})
+        if (auto s = image(*target, kGBufferFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
+    for (auto [target, what] : {std::pair{&direct, "direct light"}, {&beauty, "picture"}, {&black, "placeholder of an effect that is off"}})
+    {
+        if (target == &black && effects.diffuse && effects.glossy) continue;
+        if (auto s = image(*target, kLightFormat, VK_IMAGE_USAGE_STORAGE_BIT, what); !s) return s;
+        auto status = gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                transition(gpu, cmd, *target,
+                           {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE,
+                            VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+            });
+        if (!status) return status;
+    }
+    auto block = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
+    if (!block) return block.error();
+    frameBlock = std::move(*block);
+    indirect->setInputs({depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+
+    const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kGBufferFormat, kGBufferFormat};
+    const VkDescriptorSetLayout layouts[] = {scene.layout()};
+    const float roughness = settings.roughness.value_or(-1.0f);
+    uint32_t specialization = 0;
+    std::memcpy(&specialization, &roughness, sizeof roughness);
+    Pipeline::Graphics desc;
+    desc.vertex = gbuffer_vert;
+    desc.fragment = gbuffer_frag;
+    desc.sets = layouts;
+    desc.pushBytes = sizeof(SceneView);
+    desc.vertexBindings = SceneMesh::vertexBindings();
+    desc.vertexAttributes = SceneMesh::vertexAttributes();
+    desc.colorFormats = formats;
+    desc.depthFormat = kDepthFormat;
+    desc.specialization = std::span(&specialization, 1);
+    auto pipeline = Pipeline::graphics(gpu, desc);
+    if (!pipeline) return pipeline.error();
+    gBufferPass = std::move(*pipeline);
+
+    const DescriptorSet::Binding directBindings[] = {
+        {4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {5, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(DirectPush), scene.layout()); !s) return s;
+    directSet.write(4, emission.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    directSet.write(5, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    directSet.write(6, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
+
+    const DescriptorSet::Binding composeBindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                                      {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                                      {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                                      {7, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    if (auto s = makePass(composePass, composeSet, compose_comp, composeBindings, sizeof(uint32_t), scene.layout()); !s) return s;
+    composeSet.write(4, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
+    composeSet.write(5, (effects.glossy ? indirect->glossy() : black).view(), VK_IMAGE_LAYOUT_GENERAL);
+    composeSet.write(6, (effects.diffuse ? indirect->diffuse() : black).view(), VK_IMAGE_LAYOUT_GENERAL);
+    composeSet.write(7, beauty.view(), VK_IMAGE_LAYOUT_GENERAL);
+    return success();
+}
+
+Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
+                                                             const RenderSettings& settings)
+{
+    if (settings.glossyRays < 1 || settings.glossyRays > 256)
+        return Error{ErrorCode::badArgument, "glossy rays a pixel " + std::to_string(settings.glossyRays) + " must be 1..256"};
+    std::unique_ptr<SceneRenderer> made(new SceneRenderer(gpu, scene, field, settings));
+    if (auto status = made->make(); !status) return status.error();
+    return made;
+}
+
+void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const SceneView& view)
+{
+    const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &emission, &geometricNormal};
+    VkRenderingAttachmentInfo colors[4]{};
+    for (int i = 0; i < 4; ++i)
+    {
+        transition(gpu, cmd, *targets[i],
+                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
+        colors[i].sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+        colors[i].imageView = targets[i]->view();
+        colors[i].imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        colors[i].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        colors[i].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    }
+    constexpr VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    transition(gpu, cmd, depth,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, tests,
+                VK_ACCESS_2_MEMORY_READ_BIT,
+                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
+    VkRenderingAttachmentInfo depthInfo{};
+    depthInfo.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    depthInfo.imageView = depth.view();
+    depthInfo.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depthInfo.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR; // to 0: nothing, infinitely far
+    depthInfo.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingInfo rendering{};
+    rendering.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+    rendering.renderArea.extent = {settings.width, settings.height};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 4;
+    rendering.pColorAttachments = colors;
+    rendering.pDepthAttachment = &depthInfo;
+    gpu.vk.CmdBeginRendering(cmd, &rendering);
+    const VkViewport viewport{0.0f, 0.0f, float(settings.width), float(settings.height), 0.0f, 1.0f};
+    const VkRect2D scissor{{0, 0}, {settings.width, settings.height}};
+    gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+    gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+    const VkDescriptorSet sets[] = {scene.descriptorSet()};
+    gBufferPass.bind(cmd, sets);
+    gBufferPass.push(cmd, view);
+    scene.mesh().bind(cmd);
+    scene.mesh().cull(view, draws);
+    scene.mesh().draw(cmd, draws.opaque);
+    scene.mesh().draw(cmd, draws.masked);
+    gpu.vk.CmdEndRendering(cmd);
+    constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    for (const GpuImage* target : targets)
+        transition(gpu, cmd, *target,
+                   {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    transition(gpu, cmd, depth,
+               {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, read, tests, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+}
+
+void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t seed, GpuTimer* timer)
+{
+    const gpu::LightFieldInfo& space = field.info();
+    const CameraBasis basis = basisOf(camera, settings.width, settings.height);
+    gpu::FrameView view{};
+    view.worldFromClip = worldFromClip(camera, basis, space);
+    view.eye = camera.eye;
+    view.seed = seed;
+    view.size = {settings.width, settings.height};
+    view.glossyRays = settings.glossyRays;
+    view.normalOffset = settings.normalOffset * space.diagonal * space.scale;
+
+    if (timer) timer->begin(cmd, "G-buffer");
+    drawGBuffer(cmd, viewOf(camera, basis, space));
+    if (timer) timer->end(cmd);
+
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
+    gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+
+    const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
+    if (timer) timer->begin(cmd, "direct light");
+    const VkDescriptorSet directSets[] = {scene.descriptorSet(), directSet.handle()};
+    directPass.bind(cmd, directSets);
+    directPass.push(cmd, DirectPush{space.origin, space.scale, space.sky, scene.lights().header.deltaCount});
+    gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
+    if (timer) timer->end(cmd);
+
+    indirect->record(cmd, view, timer);
+
+    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    if (timer) timer->begin(cmd, "compose");
+    const VkDescriptorSet composeSets[] = {scene.descriptorSet(), composeSet.handle()};
+    composePass.bind(cmd, composeSets);
+    composePass.push(cmd, uint32_t(settings.effects.diffuse ? 1u : 0u) | (settings.effects.glossy ? 2u : 0u));
+    gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
+    if (timer) timer->end(cmd);
+    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT);
+}
+
+/// Four 32-bit channels a pixel; 16-bit images are widened.
+Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, VkImageLayout layout)
+{
+    const size_t pixels = size_t(settings.width) * settings.height;
+    const bool isDepth = image.desc().format == kDepthFormat, isHalf = image.desc().format == kGBufferFormat;
+    const size_t pixelBytes = isDepth ? 4 : (isHalf ? 8 : 16);
+    auto buffer = gpu.makeBuffer(pixels * pixelBytes, 0, MemoryUse::readback, "picture read back");
+    if (!buffer) return buffer.error();
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            transition(gpu, cmd, image,
+                       {layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
+                        VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+            VkBufferImageCopy copy{};
+            copy.imageSubresource = {image.aspect(), 0, 0, 1};
+            copy.imageExtent = {settings.width, settings.height, 1};
+            gpu.vk.CmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer->handle(), 1, &copy);
+            transition(gpu, cmd, image,
+                       {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout, VK_PIPELINE_STAGE_2_COPY_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                        VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                          VK_ACCESS_2_HOST_READ_BIT);
+        });
+    if (!status) return status.error();
+    std::vector<glm::vec4> values(pixels);
+    for (size_t i = 0; i < pixels; ++i)
+    {
+        const std::byte* at = buffer->mapped() + i * pixelBytes;
+        if (isDepth)
+            std::memcpy(&values[i].x, at, 4);
+        else if (isHalf)
+        {
+            uint32_t words[2];
+            std::memcpy(words, at, 8);
+            values[i] = vec4(glm::unpackHalf2x16(words[0]), glm::unpackHalf2x16(words[1]));
+        }
+        else
+            std::memcpy(&values[i], at, 16);
+    }
+    return values;
+}
+
+Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
+{
+    auto timer = GpuTimer::create(gpu, 8);
+    if (!timer) return timer.error();
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            record(cmd, camera, settings.seed, &*timer);
+        });
+    if (!status) return status.error();
+
+    RenderedFrame frame;
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.times = timer->read();
+    const size_t pixels = size_t(frame.width) * frame.height;
+    auto colors = [&](std::vector<vec3>& target, const GpuImage& image, VkImageLayout layout,
+                      std::vector<float>* fourth = nullptr) -> Status
+    {
+        auto values = readBack(image, layout);
+        if (!values) return values.error();
+        target.assign(values->begin(), values->end());
+        if (fourth)
+            for (const vec4& value : *values) fourth->push_back(value.w);
+        return success();
+    };
+    constexpr VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL, read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    if (auto s = colors(frame.beauty, beauty, general); !s) return s.error();
+    if (auto s = colors(frame.direct, direct, general); !s) return s.error();
+    frame.diffuseIndirect.assign(pixels, vec3(0.0f));
+    frame.glossyIndirect.assign(pixels, vec3(0.0f));
+    frame.counts.assign(pixels, glm::uvec4(gpu::kNoProbe, 0, 0, 0));
+    if (settings.effects.diffuse)
+        if (auto s = colors(frame.diffuseIndirect, indirect->diffuse(), general); !s) return s.error();
+    if (settings.effects.glossy)
+    {
+        if (auto s = colors(frame.glossyIndirect, indirect->glossy(), general); !s) return s.error();
+        auto counts = readBack(indirect->counts(), general);
+        if (!counts) return counts.error();
+        std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));
+    }
+    if (auto s = colors(frame.normal, normalRoughness, read, &frame.roughness); !s) return s.error();
+    if (auto s = colors(frame.albedo, baseColorMetallic, read); !s) return s.error();
+    std::vector<vec3> depths;
+    if (auto s = colors(depths, depth, read); !s) return s.error();
+    frame.depth.resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) frame.depth[i] = depths[i].x > 0.0f ? kNear * field.info().scale / depths[i].x : 0.0f;
+    return frame;
+}
+
+} // namespace sconce
