@@ -1,12 +1,16 @@
-// sconce trace: rays through a light field, on the CPU with the shaders' own text.
+// sconce trace: rays through a light field, on the device or on the CPU with the shaders' own text.
 #include <algorithm>
 #include <iostream>
+#include <span>
 
+#include "bench/baselines.h"
+#include "runtime/host_vulkan.h"
+#include "runtime/light_field.h"
 #include "runtime/light_field_file.h"
 #include "runtime/quality.h"
 #include "runtime/tracer_cpu.h"
 #include "svo/parallel.h"
-#include "tools/common.h"
+#include "tools/field_report.h"
 #include "tools/ray_files.h"
 
 namespace sconce::tools
@@ -17,9 +21,74 @@ namespace
 
 struct TraceOptions
 {
-    std::string field, rays, output, tracer = "ours";
+    std::string field, rays, output, tracer = "ours", device;
     bool cpu = false;
 };
+
+using Rays = std::span<const gpu::Ray>;
+using Hits = std::span<gpu::RayHit>;
+
+constexpr size_t kPiece = 1u << 16; // rays between two looks at the progress
+
+/// Calls trace(first, count) piece by piece.
+template <class Trace> Status inPieces(size_t rays, const Progress& progress, const Trace& trace)
+{
+    for (size_t first = 0; first < rays; first += kPiece)
+    {
+        if (!progress("trace", double(first) / double(rays))) return Error{ErrorCode::cancelled, "Interrupted; nothing was written."};
+        if (Status status = trace(first, std::min(kPiece, rays - first)); !status) return status;
+    }
+    progress("trace", 1.0);
+    return success();
+}
+
+Status traceOnCpu(const FieldData& field, bool baseline, Rays rays, Hits hits, const Progress& progress, Json& json)
+{
+    constexpr size_t kBatch = 256;
+    const Stopwatch watch;
+    Status status = inPieces(rays.size(), progress,
+                             [&](size_t first, size_t count)
+                             {
+                                 parallelFor((count + kBatch - 1) / kBatch,
+                                             [&](size_t batch)
+                                             {
+                                                 twin::LightFieldTwin<float> text(field, Quality{}.trace);
+                                                 const size_t begin = first + batch * kBatch, end = std::min(begin + kBatch, first + count);
+                                                 for (size_t i = begin; i < end; ++i)
+                                                     hits[i] = baseline ? text.b0QueryRay(rays[i].origin, rays[i].direction)
+                                                                        : text.queryRay(rays[i].origin, rays[i].direction);
+                                             });
+                                 return success();
+                             });
+    json["device"] = "cpu";
+    json["trace_seconds"] = watch.seconds();
+    return status;
+}
+
+Status traceOnDevice(const FieldData& field, bool baseline, const std::string& name, Rays rays, Hits hits, const Progress& progress,
+                     Json& json)
+{
+    const Result<OwnDevice> device = OwnDevice::create({.device = name});
+    if (!device) return device.error();
+    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
+    if (!gpu) return gpu.error();
+    Result<LightField> lightField = LightField::create(**gpu, field);
+    if (!lightField) return lightField.error();
+    Result<RayTracer> tracer = RayTracer::create(**gpu, *lightField, baseline ? traceRaysB0Plus() : Spirv{});
+    if (!tracer) return tracer.error();
+    double milliseconds = 0.0;
+    Status status = inPieces(rays.size(), progress,
+                             [&](size_t first, size_t count)
+                             {
+                                 double piece = 0.0;
+                                 Status traced = tracer->trace(rays.subspan(first, count), hits.subspan(first, count), &piece);
+                                 milliseconds += piece;
+                                 return traced;
+                             });
+    json["device"] = device->name();
+    json["trace_seconds"] = milliseconds / 1000.0; // by the device's clock
+    return status;
+}
 
 int runTrace(const TraceOptions& options, const Context& context)
 {
@@ -29,38 +98,14 @@ int runTrace(const TraceOptions& options, const Context& context)
     const Result<std::vector<gpu::Ray>> rays = readRays(options.rays);
     if (!rays) return fail(rays.error());
     const bool baseline = options.tracer == "b0plus";
-    const gpu::LightFieldInfo& info = field->info;
-    if (info.probeCount == 0)
-        return fail(ErrorCode::badInput, "Light field '" + options.field + "' has no probes; place some and bake it again.");
-    if (baseline && (info.chart != gpu::kChartOctahedral || info.gridX == 0))
-        return fail(ErrorCode::badInput, "Tracer b0plus needs a grid of octahedral probes; '" + options.field +
-                                             "' has none. Place with --method grid and bake with --chart octahedral.");
-    if (!baseline && info.chart != gpu::kChartCube)
-        return fail(ErrorCode::badInput, "Tracer ours needs cube probes; '" + options.field +
-                                             "' has octahedral ones. Bake with --chart cube, or give --tracer b0plus.");
+    if (Status status = fitsTracer(*field, options.field, options.tracer); !status) return fail(status.error());
 
     std::vector<gpu::RayHit> hits(rays->size());
-    constexpr size_t kBatch = 1024;
     const Progress progress = consoleProgress(context);
-    const Stopwatch tracing;
-    for (size_t first = 0; first < hits.size(); first += 64 * kBatch)
-    {
-        if (!progress("trace", double(first) / double(hits.size()))) return fail(ErrorCode::cancelled, "Interrupted; nothing was written.");
-        const size_t count = std::min(64 * kBatch, hits.size() - first);
-        parallelFor((count + kBatch - 1) / kBatch,
-                    [&](size_t batch)
-                    {
-                        const size_t begin = first + batch * kBatch, end = std::min(begin + kBatch, first + count);
-                        twin::LightFieldTwin<float> text(*field, Quality{}.trace);
-                        for (size_t i = begin; i < end; ++i)
-                        {
-                            const gpu::Ray& ray = (*rays)[i];
-                            hits[i] = baseline ? text.b0QueryRay(ray.origin, ray.direction) : text.queryRay(ray.origin, ray.direction);
-                        }
-                    });
-    }
-    const double traceSeconds = tracing.seconds();
-    progress("trace", 1.0);
+    Json json;
+    const Status traced = options.cpu ? traceOnCpu(*field, baseline, *rays, hits, progress, json)
+                                      : traceOnDevice(*field, baseline, options.device, *rays, hits, progress, json);
+    if (!traced) return fail(traced.error());
     if (Status status = writeHits(hits, options.output); !status) return fail(status.error());
 
     size_t counts[3] = {};
@@ -72,13 +117,11 @@ int runTrace(const TraceOptions& options, const Context& context)
         handoffs += hit.handoffs;
     }
     const double n = std::max<double>(1.0, double(hits.size()));
-    Json json;
     json["rays"] = hits.size();
     json["tracer"] = options.tracer;
     json["hit"] = counts[1], json["miss"] = counts[0], json["unknown"] = counts[2];
     json["distance_fetches_mean"] = fetches / n;
     json["handoffs_mean"] = handoffs / n;
-    json["trace_seconds"] = traceSeconds;
     addCost(json, watch);
     if (context.json)
         print(json);
@@ -104,7 +147,8 @@ void addTraceCommand(CLI::App& app, Context& context)
                      "ours, or b0plus: the uniform-grid baseline, which needs a grid of octahedral probes (default: ours)")
         ->check(unlisted(CLI::IsMember({"ours", "b0plus"})))
         ->type_name("ours|b0plus");
-    command->add_flag("--cpu", options->cpu, "Trace on the CPU; it runs the same text as the device (default: on)");
+    command->add_flag("--cpu", options->cpu, "Trace on the CPU, with the text that the device runs (default: off)");
+    addDevice(command, options->device);
     onChosen(command, context, options, runTrace);
 }
 

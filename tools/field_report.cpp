@@ -72,4 +72,17 @@ void printField(const FieldData& field, const std::string& file)
     std::cout << std::endl;
 }
 
+Status fitsTracer(const FieldData& field, const std::string& file, const std::string& tracer)
+{
+    const gpu::LightFieldInfo& info = field.info;
+    if (info.probeCount == 0) return Error{ErrorCode::badInput, "Light field '" + file + "' has no probes; place some and bake it again."};
+    if (tracer == "b0plus" && (info.chart != gpu::kChartOctahedral || info.gridX == 0))
+        return Error{ErrorCode::badInput, "Tracer b0plus needs a grid of octahedral probes; '" + file +
+                                              "' has none. Place with --method grid and bake with --chart octahedral."};
+    if (tracer == "ours" && info.chart != gpu::kChartCube)
+        return Error{ErrorCode::badInput,
+                     "Tracer ours needs cube probes; '" + file + "' has octahedral ones. Bake with --chart cube, or give --tracer b0plus."};
+    return success();
+}
+
 } // namespace sconce::tools

@@ -12,4 +12,7 @@ namespace sconce::tools
 Json fieldJson(const FieldData& field);
 void printField(const FieldData& field, const std::string& file);
 
+/// Whether a tracer ("ours", "b0plus") can read the field; the sentence says how to bake one that it can.
+Status fitsTracer(const FieldData& field, const std::string& file, const std::string& tracer);
+
 } // namespace sconce::tools

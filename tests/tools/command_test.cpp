@@ -160,7 +160,10 @@ TEST(Command, CheckTellsWhatIsInAScene)
     }
     const json sunny = jsonOf(sconceCommand({"check", "cornell", "--json", "--sun=-1,-2,0,3,3,3", "--sky", "1,1,1"}));
     for (const json& effect : sunny.at("effects"))
-        if (effect.at("name") == "sun" || effect.at("name") == "sky") EXPECT_TRUE(effect.at("called").get<bool>()) << effect;
+    {
+        const bool given = effect.at("name") == "sun" || effect.at("name") == "sky";
+        EXPECT_TRUE(!given || effect.at("called").get<bool>()) << effect;
+    }
     EXPECT_FALSE(sconceCommand({"check", "cornell"}).out.empty());
 }
 
@@ -281,7 +284,7 @@ TEST(Command, InterruptExitsWith130AndWritesNothing)
 {
     const TestFolder folder;
     const CommandResult result =
-        sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "640x360", "--spp", "100000"}, 60.0, 1.0);
+        sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "1920x1080", "--spp", "1000"}, 60.0, 1.0);
     EXPECT_EQ(result.exit, 130) << result.err;
     EXPECT_FALSE(result.timedOut);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));
