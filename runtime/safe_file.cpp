@@ -42,7 +42,9 @@ Result<SafeFile> SafeFile::create(const std::filesystem::path& target)
     std::error_code ignored;
     if (target.filename().empty() || std::filesystem::is_directory(target, ignored))
         return Error{ErrorCode::fileError, "Cannot write '" + target.string() + "': it names a folder; give a file name."};
-    std::string name = (folderOf(target) / ("." + target.filename().string() + ".XXXXXX")).string();
+    std::string name = (folderOf(target) / ".").string();
+    name += target.filename().string();
+    name += ".XXXXXX";
     file.descriptor = mkostemp(name.data(), O_CLOEXEC);
     if (file.descriptor < 0)
     {

@@ -136,6 +136,7 @@ Progress consoleProgress(const Context& context)
         done = std::clamp(done, 0.0, 1.0);
         // A bar follows the work; a log gets a line when a stage begins, ends, and every few seconds between.
         const bool finished = done >= 1.0 && state->lastDone < 1.0;
+        if (!fresh && state->lastDone >= 1.0) return !interrupted();
         if (!fresh && !finished && time - state->lastShown < (terminal ? 0.1 : 5.0)) return !interrupted();
         state->lastShown = time;
         state->lastDone = done;
@@ -151,6 +152,7 @@ Progress consoleProgress(const Context& context)
             std::cerr << "\r\x1b[K[" << std::string(size_t(filled), '#') << std::string(size_t(24 - filled), ' ') << "] " << stage << ": "
                       << text << std::flush;
             barDrawn = true;
+            if (done >= 1.0) endProgress();
         }
         else
             std::cerr << stage << ": " << text << std::endl;
