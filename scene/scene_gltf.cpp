@@ -102,6 +102,13 @@ struct Piece
     uint64_t hidden = 0; // triangles left out for their alpha
 };
 
+struct Visit // of a node that waits for its turn
+{
+    int node;
+    dmat4 worldFromParent;
+    int depth;
+};
+
 struct Instance
 {
     int mesh;
@@ -119,7 +126,7 @@ public:
 private:
     void note(const std::string& sentence) { ++notes[sentence]; } // becomes one warning, however often it happens
     Status collect();
-    Status visit(int node, const dmat4& parent, int depth);
+    Status visit(const Visit& next, std::vector<Visit>& pending);
     Status addInstances(const tg::Node& node, int index, const dmat4& world);
     Status addLight(const tg::Node& node, int index, const dmat4& world);
     Status addCamera(const tg::Node& node, int index, const dmat4& world);
@@ -221,16 +228,24 @@ Status Importer::collect()
         if (!has(model.scenes, chosen)) return bad("The file's default is scene " + outside("", chosen, model.scenes));
         roots = model.scenes[size_t(chosen)].nodes;
     }
-    for (const int root : roots)
-        if (Status status = visit(root, dmat4(1.0), 1); !status) return status;
+    // A stack of its own: 1024 levels of calls would not fit the small stacks that threads may have.
+    std::vector<Visit> pending;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), 1});
+    while (!pending.empty())
+    {
+        const Visit next = pending.back();
+        pending.pop_back();
+        if (Status status = visit(next, pending); !status) return status;
+    }
     return success();
 }
 
-Status Importer::visit(int index, const dmat4& parent, int depth)
+Status Importer::visit(const Visit& next, std::vector<Visit>& pending)
 {
+    const int index = next.node;
     if (!has(model.nodes, index)) return bad("The scene uses " + outside("node", index, model.nodes));
     const std::string owner = "Node " + std::to_string(index);
-    if (depth > GltfLimits::nodeDepth)
+    if (next.depth > GltfLimits::nodeDepth)
         return bad(owner + " lies more than " + std::to_string(GltfLimits::nodeDepth) + " levels deep; flatten the hierarchy.");
     // glTF 2.0 asks for trees. Besides cycles this stops the doubling of a node at every level by two parents.
     if (visited[size_t(index)]) return bad(owner + " is reached twice: it has two parents or is part of a cycle; export the file again.");
@@ -238,15 +253,14 @@ Status Importer::visit(int index, const dmat4& parent, int depth)
     const tg::Node& node = model.nodes[size_t(index)];
     const auto local = localTransform(node, owner);
     if (!local) return local.error();
-    const dmat4 world = parent * *local;
+    const dmat4 world = next.worldFromParent * *local;
     if (node.mesh != -1)
         if (Status status = addInstances(node, index, world); !status) return status;
     if (node.camera != -1)
         if (Status status = addCamera(node, index, world); !status) return status;
     if (node.extensions.count("KHR_lights_punctual"))
         if (Status status = addLight(node, index, world); !status) return status;
-    for (const int child : node.children)
-        if (Status status = visit(child, world, depth + 1); !status) return status;
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) pending.push_back({*child, world, next.depth + 1});
     return success();
 }
 
