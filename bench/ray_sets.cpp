@@ -56,6 +56,7 @@ RaySet emptySet(const RayScene& rays, size_t count)
     RaySet set;
     set.origins.resize(count);
     set.directions.resize(count);
+    set.normals.resize(count, vec3(0.0f));
     set.startCosine.resize(count, 1.0f);
     set.truth.resize(count);
     const Bounds bounds = rays.scene().bounds();
@@ -109,6 +110,7 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
                               if (!(cosine > 0.0f) || !(glm::dot(direction, normal) > 0.0f)) continue;
                               set.origins[i] = seen->position + 1e-4f * set.diagonal * geometric;
                               set.directions[i] = direction;
+                              set.normals[i] = geometric;
                               set.startCosine[i] = cosine;
                               set.truth[i] = truthOf(rays, set.origins[i], direction);
                               return;

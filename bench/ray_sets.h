@@ -24,6 +24,7 @@ struct RaySet
 {
     std::vector<vec3> origins;      // [n] metres, 1e-4 of the diagonal off the surface
     std::vector<vec3> directions;   // [n] unit
+    std::vector<vec3> normals;      // [n] geometric normal of the surface they leave, on the ray's side; 0 when it is not known
     std::vector<float> startCosine; // [n] with the surface they leave; below 0.05 (3 degrees) is a grazing start
     std::vector<RayTruth> truth;    // [n]
     float diagonal = 0.0f;          // of the scene, metres
