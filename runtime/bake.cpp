@@ -1,0 +1,227 @@
+#include "runtime/bake.h"
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "runtime/field_space.h"
+#include "runtime/probe_baker.h"
+#include "runtime/tracer_cpu.h"
+#include "svo/parallel.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+class Stopwatch
+{
+public:
+    double lap()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last).count();
+        last = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
+};
+
+std::string argumentFault(std::span<const vec3> probes, const BakeSettings& settings)
+{
+    if (!std::has_single_bit(settings.resolution) || settings.resolution < 16 || settings.resolution > 2048)
+        return "resolution is " + std::to_string(settings.resolution) + "; give a power of two in [16, 2048]";
+    if (settings.chart != gpu::kChartCube && settings.chart != gpu::kChartOctahedral)
+        return "chart is " + std::to_string(settings.chart) + "; give kChartCube or kChartOctahedral";
+    if (settings.bounces > 8) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 8]";
+    if (probes.empty() || probes.size() > 65535) return "there are " + std::to_string(probes.size()) + " probes; give between 1 and 65,535";
+    for (size_t i = 0; i < probes.size(); ++i)
+        if (!std::isfinite(probes[i].x + probes[i].y + probes[i].z))
+            return "probe " + std::to_string(i) + " has a position that is not finite; mend the list of probes";
+    if (settings.grid && size_t(settings.grid->count.x) * settings.grid->count.y * settings.grid->count.z != probes.size())
+        return "the grid has " + std::to_string(settings.grid->count.x) + "x" + std::to_string(settings.grid->count.y) + "x" +
+               std::to_string(settings.grid->count.z) + " probes but there are " + std::to_string(probes.size());
+    return {};
+}
+
+/// The cube faces' level 0 words at half their size, each from the plane of one of its four texels, with their chain: what summaries and
+/// octree of an octahedral field are made from.
+void halveFaces(std::span<const uint32_t> faces, uint32_t size, const gpu::LightFieldInfo& half, uint32_t* out)
+{
+    static const FieldData none;
+    twin::LightFieldTwin<float> text(none, {});
+    for (uint32_t face = 0; face < 6; ++face)
+    {
+        uint32_t* words = out + size_t(face) * (half.wordsPerProbe / 6);
+        for (uint32_t y = 0; y < half.faceSize; ++y)
+            for (uint32_t x = 0; x < half.faceSize; ++x)
+            {
+                const uint32_t word = faces[(size_t(face) * size + 2 * y) * size + 2 * x];
+                const float gx = text.unpackGradient(word >> 16), gy = text.unpackGradient(word >> 24);
+                const float change = std::max(1.0f + 0.5f * gx + 0.5f * gy, 0.5f);
+                words[y * half.faceSize + x] =
+                    (word & 0xffffu) ? text.packTexel(text.halfToReal(word) * change, 2.0f * gx / change, 2.0f * gy / change) : 0;
+            }
+        buildChain(words, half.faceSize, half.topLevel);
+    }
+}
+
+void setChart(gpu::LightFieldInfo& info, uint32_t chart, uint32_t size)
+{
+    info.chart = chart;
+    info.faceSize = size;
+    info.topLevel = chart == gpu::kChartCube ? coarsestLevel(size) : 0;
+    info.wordsPerProbe = distanceWordsPerProbe(chart, size);
+}
+
+/// A bake in progress: the field and what the bounces need besides.
+struct Bake
+{
+    FieldData field;
+    FieldData cube; // octahedral chart: the cube faces that octree and summaries are made from
+    std::vector<uint32_t> surfaces, direct;
+    const Progress& progress;
+
+    bool octahedral() const { return field.info.chart == gpu::kChartOctahedral; }
+
+    ProbeTarget target(size_t probe)
+    {
+        const size_t words = field.info.wordsPerProbe, texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
+        const size_t irradiance = 2 * gpu::kIrradianceSize * gpu::kIrradianceSize;
+        return {std::span(field.distance).subspan(probe * words, words),
+                std::span(field.radiance).subspan(probe * texels, texels),
+                std::span(surfaces).subspan(probe * texels, texels),
+                std::span(field.irradiance).subspan(probe * irradiance, irradiance),
+                {}};
+    }
+
+    Status cancelledIfAsked(std::string_view stage, size_t done, size_t count) const
+    {
+        if (report(progress, stage, double(done) / double(count))) return success();
+        return Error{ErrorCode::cancelled,
+                     "The bake was stopped at " + std::string(stage) + ", " + std::to_string(done) + " of " + std::to_string(count)};
+    }
+
+    Status directLight(ProbeBaker& baker);
+    Status index(const OctreeSettings& settings);
+    Status bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number);
+};
+
+Status Bake::directLight(ProbeBaker& baker)
+{
+    std::vector<uint32_t> faces(octahedral() ? size_t(6) * field.info.faceSize * field.info.faceSize : 0);
+    for (size_t i = 0; i < field.probes.size(); ++i)
+    {
+        if (auto status = cancelledIfAsked("probes", i, field.probes.size()); !status) return status;
+        ProbeTarget to = target(i);
+        to.faces = faces;
+        if (auto status = baker.bakeDirect(field.probes[i].centre, to); !status) return status;
+        if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cube.distance.data() + i * cube.info.wordsPerProbe);
+    }
+    return success();
+}
+
+Status Bake::index(const OctreeSettings& settings)
+{
+    FieldData& seen = octahedral() ? cube : field;
+    parallelFor(seen.probes.size(), [&](size_t i) { summariseProbe(seen, i); });
+    auto octree = buildOctree({seen.info, seen.probes, seen.distance}, settings, progress);
+    if (!octree) return octree.error();
+    if (octahedral()) field.probes = cube.probes;
+    cube = FieldData();
+    attachOctree(field, *octree);
+    return success();
+}
+
+Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
+{
+    // The whole field's irradiance as it was before this bounce, so that the order of the probes doesn't matter.
+    FieldData lit;
+    lit.info = field.info;
+    lit.probes = field.probes;
+    lit.octree = field.octree;
+    lit.irradiance = field.irradiance;
+    auto device = LightField::create(gpu, lit);
+    if (!device) return device.error();
+    const std::string stage = "bounce " + std::to_string(number);
+    const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
+    for (size_t i = 0; i < field.probes.size(); ++i)
+    {
+        if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
+        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i));
+        if (!status) return status;
+    }
+    return success();
+}
+
+} // namespace
+
+Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                                 const Progress& progress, BakeReport& bakeReport)
+{
+    if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
+    if (scene.triangles.empty())
+        return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no triangles; there is nothing to bake"};
+    Bake bake{{}, {}, {}, {}, progress};
+    BakeReport spent;
+    Stopwatch watch;
+    gpu::LightFieldInfo& info = bake.field.info;
+    info = fieldSpace(scene.bounds());
+    info.sky = scene.sky;
+    info.probeCount = uint32_t(probes.size());
+    setChart(info, settings.chart, settings.chart == gpu::kChartCube ? settings.resolution / 2 : settings.resolution);
+    if (settings.grid)
+    {
+        info.gridX = settings.grid->count.x;
+        info.gridY = settings.grid->count.y;
+        info.gridZ = settings.grid->count.z;
+        info.gridOrigin = (settings.grid->origin - info.origin) / info.scale;
+        info.gridStep = settings.grid->step / info.scale;
+    }
+    bake.field.resolution = settings.resolution;
+    bake.field.bounces = settings.bounces;
+    bake.field.sceneName = scene.name;
+    bake.field.probes.resize(probes.size());
+    for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (probes[i] - info.origin) / info.scale;
+
+    auto gpu = Gpu::create(host);
+    if (!gpu) return gpu.error();
+    {
+        auto deviceScene = DeviceScene::create(**gpu, scene, info, settings.scene, progress);
+        if (!deviceScene) return deviceScene.error();
+        auto baker = ProbeBaker::create(**gpu, *deviceScene, info);
+        if (!baker) return baker.error();
+        spent.lights = uint32_t(deviceScene->lights().lights.size());
+        spent.sceneSeconds = watch.lap();
+
+        const size_t texels = probes.size() * radianceWordsPerProbe(info.chart, info.faceSize);
+        bake.field.distance.resize(probes.size() * info.wordsPerProbe);
+        bake.field.radiance.resize(texels);
+        bake.surfaces.resize(texels);
+        bake.field.irradiance.resize(probes.size() * 2 * gpu::kIrradianceSize * gpu::kIrradianceSize);
+        if (bake.octahedral())
+        {
+            bake.cube.info = info;
+            setChart(bake.cube.info, gpu::kChartCube, info.faceSize / 2);
+            bake.cube.probes = bake.field.probes;
+            bake.cube.distance.resize(probes.size() * bake.cube.info.wordsPerProbe);
+        }
+        if (auto status = bake.directLight(**baker); !status) return status.error();
+        spent.probeSeconds = watch.lap();
+        if (auto status = bake.index(settings.octree); !status) return status.error();
+        spent.octreeSeconds = watch.lap();
+        if (settings.bounces > 0) bake.direct = bake.field.radiance;
+        for (uint32_t b = 1; b <= settings.bounces; ++b)
+            if (auto status = bake.bounce(**gpu, **baker, b); !status) return status.error();
+        spent.bounceSeconds = watch.lap();
+        spent.peakDeviceBytes = (*gpu)->memory().peak();
+    }
+    if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};
+    bakeReport = spent;
+    return std::move(bake.field);
+}
+
+} // namespace sconce

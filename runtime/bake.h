@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "runtime/device_scene.h"
+#include "runtime/field_data.h"
+#include "runtime/host_vulkan.h"
+#include "scene/progress.h"
+#include "svo/build_octree.h"
+
+namespace sconce
+{
+
+/// Where the probes stand when they form a uniform grid, x fastest: what the grid baselines index by.
+struct ProbeGrid
+{
+    uvec3 count{0};
+    vec3 origin{0.0f}; // world, metres: probe (0,0,0)
+    vec3 step{0.0f};   // metres
+};
+
+struct BakeSettings
+{
+    uint32_t resolution = 512;        // texels a side of an octahedral map, power of two, 16..2048; cube faces have half of it
+    uint32_t chart = gpu::kChartCube; // or kChartOctahedral, which the grid baselines need
+    uint32_t bounces = 2;             // times the baked light is re-injected, 0..8; each costs one gather a texel
+    DeviceSceneDesc scene;            // textures and lights
+    OctreeSettings octree;
+    std::optional<ProbeGrid> grid; // set when the probes are one
+};
+
+/// What a bake cost. Seconds are wall-clock.
+struct BakeReport
+{
+    double sceneSeconds = 0.0;  // upload and shadow maps
+    double probeSeconds = 0.0;  // faces, direct light, chains, first irradiance
+    double octreeSeconds = 0.0; // summaries and octree
+    double bounceSeconds = 0.0;
+    uint64_t peakDeviceBytes = 0;
+    uint32_t lights = 0; // delta lights, emitter samples and sky directions
+};
+
+/// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then by its own irradiance, bounce
+/// by bounce. A probe's maps before the first bounce don't depend on the other probes. Same input, same driver: same bytes.
+/// Specular reflection is baked as diffuse reflection of the same strength: a probe's texel holds one radiance for all directions.
+/// @param probes  world, metres; at least one, at most 65,535
+/// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, cancelled.
+Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                                 const Progress& progress, BakeReport& report);
+
+} // namespace sconce

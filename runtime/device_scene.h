@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+
+#include "runtime/lights.h"
+#include "runtime/pipeline.h"
+#include "runtime/scene_mesh.h"
+#include "runtime/scene_textures.h"
+#include "scene/progress.h"
+
+namespace sconce
+{
+
+struct DeviceSceneDesc
+{
+    uint32_t maxTextureSize = 1024; // texels a side, 1..4096; larger images are filtered down
+    LightSettings light;
+};
+
+/// A scene on the device: triangles, materials, textures, lights, and shadow maps rendered once. Move-only; destroy it after the GPU has
+/// finished with it and before its Gpu.
+class DeviceScene
+{
+public:
+    /// Uploads the scene and renders its shadow maps (submits and waits, a few maps at a time).
+    /// Errors: badInput (an empty or invalid scene: names the fault), badArgument (settings), outOfMemory, deviceFailure, cancelled.
+    static Result<DeviceScene> create(Gpu& gpu, const Scene& scene, const gpu::LightFieldInfo& space, const DeviceSceneDesc& desc = {},
+                                      const Progress& progress = {});
+
+    /// What shaders/scene.glsl declares; sampled by fragment and compute shaders.
+    VkDescriptorSetLayout layout() const { return set.layout(); }
+    VkDescriptorSet descriptorSet() const { return set.handle(); }
+    const SceneMesh& mesh() const { return triangles; }
+    const LightList& lights() const { return lightList; }
+    uint64_t deviceBytes() const { return bytes; }
+
+private:
+    explicit DeviceScene(SceneMesh mesh) : triangles(std::move(mesh)) {}
+    Status makeShadowMaps(Gpu& gpu, const Progress& progress);
+    SceneMesh triangles;
+    TextureArray color, data;
+    Buffer materials, lightBuffer;
+    LightList lightList;
+    GpuImage sunMaps, skyMaps, pointMaps, emitterMaps;
+    Sampler textureSampler, smoothCompare, nearestCompare;
+    DescriptorSet set;
+    uint64_t bytes = 0;
+};
+
+} // namespace sconce

@@ -1,0 +1,93 @@
+// Direct light from the list of lights, shadowed by their maps. Points and normals in field space.
+#ifndef SCONCE_LIGHTS_GLSL
+#define SCONCE_LIGHTS_GLSL
+#include "scene.glsl"
+#include "shared/brdf.h"
+#ifndef SCONCE_HAS_CHART // the shared texts have no guards of their own
+#define SCONCE_HAS_CHART
+#include "shared/chart.h"
+#endif
+
+struct LightSample
+{
+    vec3 toLight;    // unit
+    vec3 irradiance; // on a surface that faces the light, W/m^2; shadowed
+};
+
+/// The light of entry i at a point, without its shadow.
+LightSample unshadowedLight(uint i, vec3 p)
+{
+    GpuLight light = lights[i];
+    LightSample s;
+    s.toLight = -light.direction;
+    s.irradiance = light.intensity;
+    if (light.type == kLightDirectional || light.type == kLightSky) return s;
+    vec3 away = light.position - p;
+    float d2 = max(dot(away, away), 1e-14);
+    s.toLight = away * inversesqrt(d2);
+    if (light.type == kLightEmitter)
+    {
+        // A disc of the patch's area seen on its axis has exactly this form factor (Howell, "A Catalog of Radiation Heat Transfer
+        // Configuration Factors", B-12 limit), so a receiver near the patch sees no singularity.
+        s.irradiance *= light.area * abs(dot(s.toLight, light.direction)) / (d2 + light.area / SCONCE_BRDF_PI);
+        return s;
+    }
+    s.irradiance *= distanceAttenuation(sqrt(d2), light.range);
+    if (light.type == kLightSpot) s.irradiance *= spotAttenuation(dot(-s.toLight, light.direction), light.innerCone, light.outerCone);
+    return s;
+}
+
+/// Share of the light of entry i that reaches a point. The receiver is moved along its normal by as much as its plane rises over the
+/// filter's footprint (Holbert 2011, "Saying Goodbye to Shadow Acne": normal offset grows with the sine of the angle).
+float lightVisibility(uint i, vec3 p, vec3 geometricNormal, vec3 toLight)
+{
+    GpuLight light = lights[i];
+    float c = dot(geometricNormal, toLight);
+    float s = sqrt(max(0.0, 1.0 - c * c));
+    if (light.type == kLightDirectional || light.type == kLightSky)
+    {
+        vec4 q = vec4(p + (1.5 * s + 0.1) * light.shadowTexel * geometricNormal, 1.0);
+        vec3 at = vec3(dot(light.shadowX, q), dot(light.shadowY, q), dot(light.shadowDepth, q));
+        if (light.type == kLightSky) return texture(sconceSkyShadows, vec4(at.xy, float(light.shadowLayer), at.z + 5e-5)); // D16
+        return texture(sconceSunShadows, vec4(at.xy, float(light.shadowLayer), at.z + 1e-6));
+    }
+    vec3 from = p - light.position;
+    vec3 w = abs(from);
+    from += (1.5 * s + 0.1) * light.shadowTexel * max(w.x, max(w.y, w.z)) * geometricNormal;
+    int face = dominantFace(from);
+    vec3 uvw = faceCoordinates(face, from);
+    if (uvw.z <= lightsHeader.pointNear) return 1.0; // nothing is nearer than the maps' near plane
+    vec2 at = 0.5 * uvw.xy / uvw.z + 0.5;
+    vec4 coordinate = vec4(at, float(light.shadowLayer + face), lightsHeader.pointNear / uvw.z * 1.0005);
+    return light.type == kLightEmitter ? texture(sconceEmitterShadows, coordinate) : texture(sconcePointShadows, coordinate);
+}
+
+/// The light of entry i at a surface point, shadowed; irradiance is 0 where the surface's true side is turned away.
+/// @param geometricNormal  unit, on the side that is looked at
+LightSample lightAt(uint i, vec3 p, vec3 geometricNormal)
+{
+    LightSample s = unshadowedLight(i, p);
+    if (dot(geometricNormal, s.toLight) <= 0.0 || all(equal(s.irradiance, vec3(0.0))))
+    {
+        s.irradiance = vec3(0.0);
+        return s;
+    }
+    s.irradiance *= lightVisibility(i, p, geometricNormal, s.toLight);
+    return s;
+}
+
+/// Irradiance of a surface from the lights [first, last), W/m^2.
+vec3 directLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal, uint first, uint last)
+{
+    vec3 sum = vec3(0.0);
+    for (uint i = first; i < last; ++i)
+    {
+        LightSample s = unshadowedLight(i, p);
+        float cosine = dot(shadingNormal, s.toLight);
+        if (cosine <= 0.0 || dot(geometricNormal, s.toLight) <= 0.0) continue;
+        sum += cosine * lightVisibility(i, p, geometricNormal, s.toLight) * s.irradiance;
+    }
+    return sum;
+}
+
+#endif

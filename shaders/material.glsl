@@ -1,0 +1,54 @@
+// Materials at a uv: the GPU's twin of scene.cpp's evaluateMaterial. Textures of all materials share two arrays of one size, so that no
+// bindless access is needed; wrap modes are done here, since one sampler serves all layers.
+#ifndef SCONCE_MATERIAL_GLSL
+#define SCONCE_MATERIAL_GLSL
+#include "scene.glsl"
+
+struct SurfacePoint
+{
+    vec4 baseColor; // linear
+    float metallic;
+    float roughness;
+    vec3 emission; // W/(m^2 sr)
+};
+
+float sconceWrap(float u, uint mode, float halfTexel)
+{
+    if (mode == 0u) return u - floor(u);                   // repeat
+    if (mode == 1u) return clamp(u, halfTexel, 1.0 - halfTexel); // clamp
+    float t = u - 2.0 * floor(0.5 * u);                    // mirror
+    return clamp(t > 1.0 ? 2.0 - t : t, halfTexel, 1.0 - halfTexel);
+}
+
+vec4 sconceTexture(sampler2DArray textures, GpuTexture slot, vec2 uv, vec2 uvDx, vec2 uvDy)
+{
+    if (slot.layer < 0) return vec4(1.0);
+    mat2 m = mat2(slot.uvMatrix.xy, slot.uvMatrix.zw);
+    vec2 at = m * uv + slot.uvOffset;
+    vec2 halfTexel = 0.5 / vec2(textureSize(textures, 0).xy);
+    vec2 wrapped = vec2(sconceWrap(at.x, slot.wrap & 3u, halfTexel.x), sconceWrap(at.y, slot.wrap >> 2, halfTexel.y));
+    return textureGrad(textures, vec3(wrapped, float(slot.layer)), m * uvDx, m * uvDy);
+}
+
+/// @param uvDx, uvDy  change of uv to the next pixel, which picks the mip level
+SurfacePoint evaluateMaterial(uint material, vec2 uv, vec2 uvDx, vec2 uvDy)
+{
+    GpuMaterial m = sconceMaterials[material];
+    vec4 data = sconceTexture(sconceDataTextures, m.metallicRoughnessTexture, uv, uvDx, uvDy);
+    SurfacePoint point;
+    point.baseColor = m.baseColor * sconceTexture(sconceColorTextures, m.baseColorTexture, uv, uvDx, uvDy);
+    point.metallic = m.metallic * data.b;
+    point.roughness = m.roughness * data.g;
+    point.emission = m.emission * sconceTexture(sconceColorTextures, m.emissionTexture, uv, uvDx, uvDy).rgb;
+    return point;
+}
+
+/// Whether a point of an alpha-masked material is there at all.
+bool isThere(uint material, vec2 uv, vec2 uvDx, vec2 uvDy)
+{
+    GpuMaterial m = sconceMaterials[material];
+    if (m.alphaCutoff <= 0.0) return true;
+    return m.baseColor.a * sconceTexture(sconceColorTextures, m.baseColorTexture, uv, uvDx, uvDy).a >= m.alphaCutoff;
+}
+
+#endif

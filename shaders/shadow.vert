@@ -1,0 +1,18 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "scene_vertex.glsl"
+
+// Depth of the scene from a light. With MASKED, what shadow_masked.frag needs to cut holes.
+#ifdef MASKED
+layout(location = 0) out vec2 outUv;
+layout(location = 1) flat out uint outMaterial;
+#endif
+
+void main()
+{
+    gl_Position = clip * vec4(inPosition - centre, 1.0);
+#ifdef MASKED
+    outUv = inUv;
+    outMaterial = inMaterial;
+#endif
+}
