@@ -30,7 +30,7 @@ struct PlaceSettings
     std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
     uint64_t seed = 1;        // of every random choice; same scene, settings and seed: same bytes
     float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
-    uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 10 bytes and 0.5 us each
+    uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
     uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
     uint32_t surfels = 40000;         // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
 };

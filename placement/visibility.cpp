@@ -105,11 +105,7 @@ RTCRay embreeRay(vec3 origin, vec3 direction, float from, float to)
 
 bool Visibility::State::attach(uint32_t kind)
 {
-    if (triangleOf[kind].empty())
-    {
-        // Keeps geometry ids fixed: 0 solid, 1 masked.
-        return true;
-    }
+    if (triangleOf[kind].empty()) return true; // geometry ids stay fixed: 0 solid, 1 masked
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene->positions.size()));

@@ -93,7 +93,7 @@ TEST(Coverage, AgreesWithABruteForceRayCasterInAFurnishedRoom)
     EXPECT_NEAR(double(coverage->rays), truth, 0.02);
 }
 
-// Of an L-shaped view problem the area is known: behind the half wall a probe at the floor's level of one side sees none of the other
+// Of two closed rooms, a probe in one sees all of it and nothing of the other.
 // side's floor.
 TEST(Coverage, ClosedOffRoomIsSeenOnlyByItsOwnProbe)
 {

@@ -226,7 +226,7 @@ TEST(PlaceProbes, SponzaIsSeenBy54Probes)
     EXPECT_LT(report.reachable.size().z, 20.0f);
 }
 
-// Within the same time: better than a uniform grid of the same count in the same bounds.
+// The same count in the same bounds.
 TEST(PlaceProbes, TempleIsSeenBetterThanByAGrid)
 {
     const auto scene = makeBuiltinScene("temple");
