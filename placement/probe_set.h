@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 
+#include "scene/probe_grid.h"
 #include "scene/result.h"
 
 namespace sconce
@@ -18,18 +19,10 @@ struct PlacedProbe
     std::string why;    // a few words: grid cell, skeleton cluster, ...
 };
 
-/// Present when the probes are a full uniform grid: index = x + count.x * (y + count.y * z), position = origin + step * (x,y,z).
-struct ProbeGrid
-{
-    glm::ivec3 count{0};
-    glm::vec3 origin{0.0f};
-    glm::vec3 step{0.0f};
-};
-
 struct ProbeSet
 {
     std::vector<PlacedProbe> probes;
-    std::optional<ProbeGrid> grid;
+    std::optional<ProbeGrid> grid; // present when the probes are a full uniform grid
     std::string method; // sdf | grid | ...
     std::string scene;
     uint64_t seed = 0;

@@ -6,19 +6,12 @@
 #include "runtime/device_scene.h"
 #include "runtime/field_data.h"
 #include "runtime/host_vulkan.h"
+#include "scene/probe_grid.h"
 #include "scene/progress.h"
 #include "svo/build_octree.h"
 
 namespace sconce
 {
-
-/// Where the probes stand when they form a uniform grid, x fastest: what the grid baselines index by.
-struct ProbeGrid
-{
-    uvec3 count{0};
-    vec3 origin{0.0f}; // world, metres: probe (0,0,0)
-    vec3 step{0.0f};   // metres
-};
 
 struct BakeSettings
 {
