@@ -3,7 +3,9 @@
 
 #include "placement/probe_set.h"
 #include "runtime/bake.h"
+#include "runtime/host_vulkan.h"
 #include "runtime/light_field_file.h"
+#include "scene/scene_check.h"
 #include "tools/field_report.h"
 
 namespace sconce::tools
@@ -36,11 +38,19 @@ int runBake(const BakeOptions& options, const Context& context)
     BakeReport report;
     Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
     if (!field) return fail(field.error());
+    for (const SceneEffect& effect : checkScene(*scene).effects)
+        if (effect.called) field->effects.push_back(effect.name);
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     if (context.json)
     {
         Json json = fieldJson(*field);
         json["device"] = device->name();
+        json["lights"] = report.lights;
+        json["peak_device_bytes"] = report.peakDeviceBytes;
+        json["stage_seconds"] = {{"scene", report.sceneSeconds},
+                                 {"probes", report.probeSeconds},
+                                 {"octree", report.octreeSeconds},
+                                 {"bounces", report.bounceSeconds}};
         addCost(json, watch);
         print(json);
     }

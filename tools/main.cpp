@@ -16,7 +16,9 @@ int main(int argc, char** argv)
     Context context;
     addSceneCommands(app, context);
     addPlaceCommand(app, context);
+    addBakeCommand(app, context);
     addFieldCommands(app, context);
+    addRenderCommand(app, context);
     addTraceCommand(app, context);
     addReferenceCommands(app, context);
     addDoctorCommand(app, context);

@@ -1,0 +1,246 @@
+// sconce render: one frame as a host would draw it, with its passes timed.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "bench/baselines.h"
+#include "runtime/host_vulkan.h"
+#include "runtime/light_field_file.h"
+#include "runtime/scene_renderer.h"
+#include "scene/scene_check.h"
+#include "tools/field_report.h"
+#include "tools/pictures.h"
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_indirect", "glossy_indirect", "depth",  "normal", "albedo",
+                                               "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
+
+struct RenderOptions
+{
+    SceneOptions scene;
+    CameraOptions camera;
+    PictureOptions pictures;
+    std::string field, effects = "auto", tracer = "ours", device;
+    uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
+    std::optional<float> roughness;
+    bool noDenoise = false;
+};
+
+/// auto leaves out what cannot add light: then the frame is the full one to the bit.
+Result<IndirectEffects> chooseEffects(const std::string& text, const Scene& scene)
+{
+    if (text == "all") return IndirectEffects{};
+    if (text == "none") return IndirectEffects{.diffuse = false, .glossy = false, .denoise = false};
+    IndirectEffects effects;
+    if (text == "auto")
+    {
+        for (const SceneEffect& effect : checkScene(scene).effects)
+            if (effect.name == "diffuse") effects.diffuse = effect.called;
+        return effects;
+    }
+    effects = {.diffuse = false, .glossy = false, .denoise = false};
+    for (const std::string& name : split(text, ','))
+    {
+        if (name == "diffuse")
+            effects.diffuse = true;
+        else if (name == "glossy")
+            effects.glossy = true;
+        else if (name == "denoise")
+            effects.denoise = true;
+        else
+            return Error{ErrorCode::badArgument,
+                         "--effects: '" + name + "' is not auto, all, none, or a list of diffuse, glossy, denoise."};
+    }
+    return effects;
+}
+
+void addColours(ImageSet& images, const char* name, const std::vector<vec3>& pixels)
+{
+    if (pixels.empty()) return;
+    Layer& layer = images.add(name, 3);
+    for (size_t i = 0; i < pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) layer.pixels[3 * i + size_t(c)] = pixels[i][c];
+}
+
+void addNumbers(ImageSet& images, const char* name, const std::vector<float>& pixels)
+{
+    if (!pixels.empty()) images.add(name, 1).pixels = pixels;
+}
+
+ImageSet imagesOf(const RenderedFrame& frame)
+{
+    ImageSet images;
+    images.width = frame.width;
+    images.height = frame.height;
+    addColours(images, "beauty", frame.beauty);
+    addColours(images, "direct", frame.direct);
+    addColours(images, "diffuse_indirect", frame.diffuseIndirect);
+    addColours(images, "glossy_indirect", frame.glossyIndirect);
+    addNumbers(images, "depth", frame.depth);
+    addColours(images, "normal", frame.normal);
+    addColours(images, "albedo", frame.albedo);
+    addNumbers(images, "roughness", frame.roughness);
+    const char* const names[] = {"probe", "handoffs", "fetches", "unknown"};
+    for (int part = 0; part < 4 && !frame.counts.empty(); ++part)
+    {
+        Layer& layer = images.add(names[part], 1);
+        for (size_t i = 0; i < frame.counts.size(); ++i)
+            layer.pixels[i] = part == 0 && frame.counts[i].x == gpu::kNoProbe ? -1.0f : float(frame.counts[i][part]);
+    }
+    return images;
+}
+
+/// Means over the pixels that show a surface.
+void addCounts(Json& json, const RenderedFrame& frame, uint32_t samples)
+{
+    double unknown = 0.0, fetches = 0.0, handoffs = 0.0, surfaces = 0.0;
+    for (size_t i = 0; i < frame.counts.size(); ++i)
+    {
+        if (!(frame.depth[i] > 0.0f)) continue;
+        ++surfaces;
+        handoffs += frame.counts[i].y;
+        fetches += frame.counts[i].z;
+        unknown += frame.counts[i].w;
+    }
+    if (surfaces == 0.0) return;
+    json["unknown_share"] = unknown / (surfaces * samples);
+    json["fetches_per_ray"] = fetches / (surfaces * samples);
+    json["handoffs_per_ray"] = handoffs / (surfaces * samples);
+}
+
+double median(std::vector<double> values)
+{
+    std::ranges::sort(values);
+    return values.empty() ? 0.0 : 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+int runRender(const RenderOptions& options, const Context& context)
+{
+    const Stopwatch watch;
+    if (const std::string problem = options.pictures.problem(kFrameLayers); !problem.empty()) return fail(ErrorCode::badArgument, problem);
+    const Result<Scene> scene = options.scene.load(context);
+    if (!scene) return fail(scene.error());
+    const Result<Camera> camera = options.camera.choose(*scene);
+    if (!camera) return fail(camera.error());
+    const Result<IndirectEffects> effects = chooseEffects(options.effects, *scene);
+    if (!effects) return fail(effects.error());
+    const Result<FieldData> data = loadField(options.field);
+    if (!data) return fail(data.error());
+    if (Status status = fitsTracer(*data, options.field, options.tracer); !status) return fail(status.error());
+    if (!data->sceneName.empty() && data->sceneName != scene->name)
+        note(context, "Note: the light field was baked from scene '" + data->sceneName + "', this is '" + scene->name + "'.");
+
+    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
+    if (!device) return fail(device.error());
+    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
+    if (!gpu) return fail(gpu.error());
+    // A frame's direct light is that of the lights without area; emitters and sky are in the probes.
+    DeviceSceneDesc desc;
+    desc.light.emitterSamples = desc.light.skySamples = 0;
+    Result<DeviceScene> deviceScene = DeviceScene::create(**gpu, *scene, data->info, desc, consoleProgress(context));
+    if (!deviceScene) return fail(deviceScene.error());
+    Result<LightField> field = LightField::create(**gpu, *data);
+    if (!field) return fail(field.error());
+    RenderSettings settings;
+    settings.width = options.width;
+    settings.height = options.height;
+    settings.glossyRays = options.samples;
+    settings.effects = *effects;
+    settings.effects.denoise = effects->denoise && !options.noDenoise;
+    settings.roughness = options.roughness;
+    settings.seed = options.seed;
+    if (options.tracer == "b0plus") settings.glossyShader = traceGlossyB0Plus();
+    Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(**gpu, *deviceScene, *field, settings);
+    if (!renderer) return fail(renderer.error());
+
+    const Progress progress = consoleProgress(context);
+    std::vector<double> frameMs;
+    std::map<std::string, std::vector<double>> passMs;
+    std::vector<std::string> passes; // in the order of the frame
+    Result<RenderedFrame> frame = Error{ErrorCode::cancelled, "Interrupted; nothing was written."};
+    for (uint32_t i = 0; i < options.frames; ++i)
+    {
+        if (!progress("render", double(i) / options.frames)) return fail(ErrorCode::cancelled, "Interrupted; nothing was written.");
+        frame = (*renderer)->render(*camera);
+        if (!frame) return fail(frame.error());
+        double sum = 0.0;
+        for (const GpuTimer::Scope& scope : frame->times)
+        {
+            sum += scope.milliseconds;
+            if (!passMs.contains(scope.name)) passes.emplace_back(scope.name);
+            passMs[scope.name].push_back(scope.milliseconds);
+        }
+        if (!frame->times.empty()) frameMs.push_back(sum);
+    }
+    progress("render", 1.0);
+
+    Json json;
+    json["device"] = device->name();
+    json["tracer"] = options.tracer;
+    json["effects"] = {{"diffuse", settings.effects.diffuse}, {"glossy", settings.effects.glossy}, {"denoise", settings.effects.denoise}};
+    json["samples"] = options.samples;
+    json["frames"] = options.frames;
+    json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
+    json["passes_ms"] = Json::object();
+    for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
+    if (settings.effects.glossy) addCounts(json, *frame, options.samples);
+    if (Status status = options.pictures.write(imagesOf(*frame), json); !status) return fail(status.error());
+    addCost(json, watch);
+    if (context.json)
+        print(json);
+    else
+    {
+        std::cout << options.pictures.output << ": " << options.width << "x" << options.height << " on " << device->name() << ", frame "
+                  << (frameMs.empty() ? std::string("not timed") : std::to_string(median(frameMs)) + " ms") << "\n";
+        for (const std::string& pass : passes) std::cout << "  " << pass << ": " << median(passMs[pass]) << " ms\n";
+        std::cout << std::flush;
+    }
+    return exitOk;
+}
+
+} // namespace
+
+void addRenderCommand(CLI::App& app, Context& context)
+{
+    CLI::App* command = addCommand(app, context, "render", "Draws a frame with the indirect light of a light field and times its passes");
+    auto options = std::make_shared<RenderOptions>();
+    options->scene.add(command);
+    command->add_option("--field", options->field, ".sconce file of `sconce bake` (required)")->required()->type_name("FILE");
+    options->camera.add(command);
+    addSize(command, options->width, options->height);
+    command
+        ->add_option("--effects", options->effects,
+                     "auto: what the scene calls for; all; none; or a list of diffuse, glossy, denoise (default: auto)")
+        ->type_name("auto|all|none|LIST");
+    command
+        ->add_option("--tracer", options->tracer,
+                     "ours, or b0plus: the uniform-grid baseline, which needs a grid of octahedral probes (default: ours)")
+        ->check(unlisted(CLI::IsMember({"ours", "b0plus"})))
+        ->type_name("ours|b0plus");
+    command
+        ->add_option("--samples", options->samples,
+                     "Glossy rays a pixel; noise falls with the square root, time grows in proportion (default: 1; range: 1 to 64)")
+        ->check(unlisted(CLI::Range(1u, 64u)))
+        ->type_name("N");
+    command->add_flag("--no-denoise", options->noDenoise, "Leaves the glossy term unfiltered (default: filtered)");
+    command->add_option("--roughness", options->roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
+        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
+        ->type_name("R");
+    command
+        ->add_option("--frames", options->frames,
+                     "Draws the frame N times and reports the median of the times (default: 1; range: 1 to 1000)")
+        ->check(unlisted(CLI::Range(1u, 1000u)))
+        ->type_name("N");
+    command->add_option("--seed", options->seed, "Of the glossy rays (default: 1; range: 0 to 2^32-1)")->type_name("N");
+    addDevice(command, options->device);
+    options->pictures.add(command, kFrameLayers);
+    onChosen(command, context, options, runRender);
+}
+
+} // namespace sconce::tools
