@@ -41,7 +41,9 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     for (size_t i = 0; i < probes.size(); ++i)
         if (!std::isfinite(probes[i].x + probes[i].y + probes[i].z))
             return "probe " + std::to_string(i) + " has a position that is not finite; mend the list of probes";
-    if (settings.grid && size_t(settings.grid->count.x) * settings.grid->count.y * settings.grid->count.z != probes.size())
+    if (settings.grid &&
+        (glm::any(glm::lessThan(settings.grid->count, glm::ivec3(1))) ||
+         size_t(settings.grid->count.x) * size_t(settings.grid->count.y) * size_t(settings.grid->count.z) != probes.size()))
         return "the grid has " + std::to_string(settings.grid->count.x) + "x" + std::to_string(settings.grid->count.y) + "x" +
                std::to_string(settings.grid->count.z) + " probes but there are " + std::to_string(probes.size());
     return {};
@@ -81,8 +83,8 @@ void setChart(gpu::LightFieldInfo& info, uint32_t chart, uint32_t size)
 struct Bake
 {
     FieldData field;
-    FieldData cube; // octahedral chart: the cube faces that octree and summaries are made from
-    std::vector<uint32_t> surfaces, direct;
+    FieldData cube;                                  // octahedral chart: the cube faces that octree and summaries are made from
+    std::vector<uint32_t> surfaces, direct, emitted; // emitted is empty when the scene has no emitters
     const Progress& progress;
 
     bool octahedral() const { return field.info.chart == gpu::kChartOctahedral; }
@@ -94,6 +96,7 @@ struct Bake
         return {std::span(field.distance).subspan(probe * words, words),
                 std::span(field.radiance).subspan(probe * texels, texels),
                 std::span(surfaces).subspan(probe * texels, texels),
+                emitted.empty() ? std::span<uint32_t>() : std::span(emitted).subspan(probe * texels, texels),
                 std::span(field.irradiance).subspan(probe * irradiance, irradiance),
                 {}};
     }
@@ -118,7 +121,7 @@ Status Bake::directLight(ProbeBaker& baker)
         if (auto status = cancelledIfAsked("probes", i, field.probes.size()); !status) return status;
         ProbeTarget to = target(i);
         to.faces = faces;
-        if (auto status = baker.bakeDirect(field.probes[i].centre, to); !status) return status;
+        if (auto status = baker.bakeDirect(field.probes[i].centre, field.bounces == 0, to); !status) return status;
         if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cube.distance.data() + i * cube.info.wordsPerProbe);
     }
     return success();
@@ -151,7 +154,8 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
         if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
-        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i));
+        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels),
+                                       number == field.bounces, target(i));
         if (!status) return status;
     }
     return success();
@@ -165,7 +169,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
     if (scene.triangles.empty())
         return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no triangles; there is nothing to bake"};
-    Bake bake{{}, {}, {}, {}, progress};
+    Bake bake{{}, {}, {}, {}, {}, progress};
     BakeReport spent;
     Stopwatch watch;
     gpu::LightFieldInfo& info = bake.field.info;
@@ -175,9 +179,9 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     setChart(info, settings.chart, settings.chart == gpu::kChartCube ? settings.resolution / 2 : settings.resolution);
     if (settings.grid)
     {
-        info.gridX = settings.grid->count.x;
-        info.gridY = settings.grid->count.y;
-        info.gridZ = settings.grid->count.z;
+        info.gridX = uint32_t(settings.grid->count.x);
+        info.gridY = uint32_t(settings.grid->count.y);
+        info.gridZ = uint32_t(settings.grid->count.z);
         info.gridOrigin = (settings.grid->origin - info.origin) / info.scale;
         info.gridStep = settings.grid->step / info.scale;
     }
@@ -201,6 +205,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         bake.field.distance.resize(probes.size() * info.wordsPerProbe);
         bake.field.radiance.resize(texels);
         bake.surfaces.resize(texels);
+        if (deviceScene->lights().header.emitterCount > 0) bake.emitted.resize(texels);
         bake.field.irradiance.resize(probes.size() * 2 * gpu::kIrradianceSize * gpu::kIrradianceSize);
         if (bake.octahedral())
         {

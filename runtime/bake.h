@@ -20,7 +20,7 @@ struct BakeSettings
     uint32_t bounces = 2;             // times the baked light is re-injected, 0..8; each costs one gather a texel
     DeviceSceneDesc scene;            // textures and lights
     OctreeSettings octree;
-    std::optional<ProbeGrid> grid; // set when the probes are one
+    std::optional<ProbeGrid> grid; // set when the probes are a uniform one
 };
 
 /// What a bake cost. Seconds are wall-clock.

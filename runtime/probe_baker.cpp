@@ -41,6 +41,7 @@ Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceSce
 {
     std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info));
     baker->octahedral = info.chart == gpu::kChartOctahedral;
+    baker->emitters = scene.lights().header.emitterCount > 0;
     baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
     if (auto status = baker->createBuffers(); !status) return status.error();
     if (auto status = baker->createPipelines(); !status) return status.error();
@@ -71,16 +72,16 @@ Status ProbeBaker::createBuffers()
         MemoryUse use;
         const char* what;
     };
-    const uint64_t transferWords = uint64_t(info.wordsPerProbe) + 3ull * radianceWords + kIrradianceWords + (octahedral ? faceTexels : 0);
+    const uint64_t transferWords = uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWords + (octahedral ? faceTexels : 0);
     std::vector<Need> needs = {{words, info.wordsPerProbe, MemoryUse::device, "A probe's distance words"},
-                               {light, 3ull * radianceWords, MemoryUse::device, "A probe's radiance"},
+                               {light, 4ull * radianceWords, MemoryUse::device, "A probe's radiance"},
                                {cells, 4ull * 6 * 32 * 32, MemoryUse::device, "A probe's coarse cells"},
                                {irradiance, kIrradianceWords, MemoryUse::device, "A probe's irradiance"},
                                {transfer, transferWords, MemoryUse::readback, "The bake's transfer buffer"}};
     if (octahedral)
     {
         needs.push_back({faceWords, faceTexels, MemoryUse::device, "A probe's face words"});
-        needs.push_back({faceLight, 2ull * faceTexels, MemoryUse::device, "A probe's face radiance"});
+        needs.push_back({faceLight, 3ull * faceTexels, MemoryUse::device, "A probe's face radiance"});
     }
     for (const Need& need : needs)
     {
@@ -138,19 +139,21 @@ Status ProbeBaker::createPipelines()
 
 ProbeBaker::Push ProbeBaker::pushFor(vec3 centre) const
 {
-    const VkDeviceAddress radianceBytes = VkDeviceAddress(radianceWords) * 4;
-    return {words.address(),
-            light.address(),
-            light.address() + radianceBytes,
-            light.address() + 2 * radianceBytes,
-            centre,
-            kNear * info.diagonal,
-            info.faceSize,
-            octahedral ? 0 : info.wordsPerProbe / 6,
-            info.chart,
-            0,
-            info.sky,
-            2.0f * info.diagonal};
+    const VkDeviceAddress base = light.address(), part = VkDeviceAddress(radianceWords) * 4;
+    Push push{};
+    push.words = words.address();
+    push.radiance = base;
+    push.surface = base + part;
+    push.emitted = emitters ? base + 2 * part : 0;
+    push.extra = base + 3 * part;
+    push.centre = centre;
+    push.nearPlane = kNear * info.diagonal;
+    push.size = info.faceSize;
+    push.faceWords = octahedral ? 0 : info.wordsPerProbe / 6;
+    push.chart = info.chart;
+    push.sky = info.sky;
+    push.skyDistance = 2.0f * info.diagonal;
+    return push;
 }
 
 void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const Push& push,
@@ -227,6 +230,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
         push.words = faceWords.address();
         push.radiance = faceLight.address();
         push.surface = faceLight.address() + VkDeviceAddress(6) * n * n * 4;
+        push.emitted = emitters ? faceLight.address() + VkDeviceAddress(12) * n * n * 4 : 0;
         push.faceWords = n * n;
     }
     const VkDescriptorSet both[] = {scene.descriptorSet(), images.handle()};
@@ -243,13 +247,24 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     dispatch(cmd, lowPass, {}, push, n / gpu::kLowFactor, 1);
 }
 
-void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
+void ProbeBaker::recordIrradiance(VkCommandBuffer cmd, bool whole)
 {
     Push push = pushFor(vec3(0.0f));
+    push.reflectedOnly = whole ? 0 : 1;
+    recordGather(cmd, false, push);
+}
+
+void ProbeBaker::recordMoments(VkCommandBuffer cmd)
+{
+    recordGather(cmd, true, pushFor(vec3(0.0f)));
+}
+
+void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments, Push push)
+{
     push.level = std::min(info.faceSize, (octahedral ? 32u : 16u) * (moments ? 2u : 1u));
     push.extra = cells.address();
-    push.surface = irradiance.address();
     dispatch(cmd, downsample[moments], {}, push, push.level, octahedral ? 1 : 6);
+    push.words = irradiance.address();
     dispatch(cmd, gather[moments], {}, push, gpu::kIrradianceSize, 1);
 }
 
@@ -258,12 +273,12 @@ void ProbeBaker::copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> piec
     gpu.vk.CmdCopyBuffer(cmd, from.handle(), transfer.handle(), uint32_t(pieces.size()), pieces.data());
 }
 
-Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
+Status ProbeBaker::bakeDirect(vec3 centre, bool whole, const ProbeTarget& target)
 {
-    const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), lightBytes = radianceWords * VkDeviceSize(8);
+    const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), lightBytes = radianceWords * VkDeviceSize(emitters ? 12 : 8);
     const VkDeviceSize faceBytes = octahedral ? VkDeviceSize(6) * info.faceSize * info.faceSize * 4 : 0;
-    assert(target.distance.size_bytes() == wordBytes && target.radiance.size_bytes() * 2 == lightBytes &&
-           target.surface.size() == target.radiance.size() && target.irradiance.size() == kIrradianceWords &&
+    assert(target.distance.size_bytes() == wordBytes && target.radiance.size() == radianceWords && target.surface.size() == radianceWords &&
+           target.emitted.size() == (emitters ? radianceWords : 0) && target.irradiance.size() == kIrradianceWords &&
            target.faces.size_bytes() == faceBytes);
     const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWords * 4;
     auto status = gpu.submit(
@@ -271,8 +286,8 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
         {
             recordFaces(cmd, centre);
             recordMaps(cmd, centre);
-            recordGather(cmd, false);
-            recordGather(cmd, true);
+            recordIrradiance(cmd, whole);
+            recordMoments(cmd);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, wordBytes}}, words);
             copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWords * 4}}, irradiance);
@@ -282,7 +297,8 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
         });
     if (!status) return status;
     const std::byte* from = transfer.mapped();
-    for (const std::span<uint32_t> part : {target.distance, target.radiance, target.surface, target.irradiance, target.faces})
+    for (const std::span<uint32_t> part :
+         {target.distance, target.radiance, target.surface, target.emitted, target.irradiance, target.faces})
     {
         if (!part.empty()) std::memcpy(part.data(), from, part.size_bytes());
         from += part.size_bytes();
@@ -290,7 +306,7 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
     return success();
 }
 
-Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target)
+Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, bool whole, const ProbeTarget& target)
 {
     if (!bouncePass)
     {
@@ -304,18 +320,22 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
     std::memcpy(transfer.mapped(), target.distance.data(), wordBytes);
     std::memcpy(transfer.mapped() + wordBytes, target.surface.data(), radianceBytes);
     std::memcpy(transfer.mapped() + wordBytes + radianceBytes, direct.data(), radianceBytes);
+    if (emitters) std::memcpy(transfer.mapped() + wordBytes + 2 * radianceBytes, target.emitted.data(), radianceBytes);
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
-            const VkBufferCopy toWords{0, 0, wordBytes}, toLight{wordBytes, radianceBytes, 2 * radianceBytes};
+            const VkBufferCopy toWords{0, 0, wordBytes};
+            const VkBufferCopy toLight[] = {{wordBytes, radianceBytes, radianceBytes},
+                                            {wordBytes + radianceBytes, 3 * radianceBytes, radianceBytes},
+                                            {wordBytes + 2 * radianceBytes, 2 * radianceBytes, radianceBytes}};
             gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), words.handle(), 1, &toWords);
-            gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), 1, &toLight);
+            gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), emitters ? 3 : 2, toLight);
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
                           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
             const VkDescriptorSet sets[] = {field.descriptorSet()};
             dispatch(cmd, bouncePass, sets, pushFor(centre), info.faceSize, octahedral ? 1 : 6);
-            recordGather(cmd, false);
+            recordIrradiance(cmd, whole);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWords * 4}}, irradiance);
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,

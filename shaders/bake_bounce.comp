@@ -4,7 +4,7 @@
 #include "light_field.glsl"
 
 // Bake: one more bounce. Every texel's radiance is its direct one plus what it reflects of the light field's own irradiance (Jacobi
-// iteration of the light transport over the probes' texels). Dispatch: ceil(N/8) twice x 6 (cube) or 1 (octahedral).
+// iteration of the light transport over the probes' texels). That irradiance leaves out emission and sky: they are in the direct one. Dispatch: ceil(N/8) twice x 6 (cube) or 1 (octahedral).
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ProbeWords { uint word[]; };
 layout(scalar, push_constant) uniform Push
@@ -21,6 +21,9 @@ layout(scalar, push_constant) uniform Push
     uint level;
     vec3 sky;
     float skyDistance;
+    ProbeWords emitted;
+    uint reflectedOnly;
+    uint unused;
 };
 
 void main()

@@ -41,7 +41,14 @@ void main()
             if (chart == kChartOctahedral && word != 0x7c00u) r = min(halfToReal(word), skyDistance);
             sum += weight * vec3(r, r * r, 0.0);
 #else
-            sum += weight * unpackRadiance(radiance.word[((chart == kChartCube ? at.z * size : 0u) + y) * size + x]);
+            uint index = ((chart == kChartCube ? at.z * size : 0u) + y) * size + x;
+            vec3 seen = unpackRadiance(radiance.word[index]);
+            if (reflectedOnly != 0u)
+            {
+                if (surface.word[index] == 0u) seen = vec3(0.0);
+                else if (!isNull(emitted)) seen = max(seen - unpackRadiance(emitted.word[index]), vec3(0.0));
+            }
+            sum += weight * seen;
 #endif
             solidAngle += weight;
         }

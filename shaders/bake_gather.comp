@@ -14,6 +14,7 @@ void main()
     if (at.x >= kIrradianceSize || at.y >= kIrradianceSize) return;
     vec3 direction = directionFromOctahedral((vec2(at) + 0.5) / float(kIrradianceSize));
     Cells cells = Cells(uvec2(extra));
+    BakeWords irradiance = words; // this pass reads no distances
     uint width = level;
     int faces = chart == kChartCube ? 6 : 1;
     vec3 sum = vec3(0.0);
@@ -39,8 +40,8 @@ void main()
     sum /= max(weights, 1e-20);
     uint index = 2u * (at.y * kIrradianceSize + at.x);
 #ifdef MOMENTS
-    surface.word[index + 1u] = realToHalf(sum.x) | (realToHalf(max(sum.y - sum.x * sum.x, 0.0)) << 16);
+    irradiance.word[index + 1u] = realToHalf(sum.x) | (realToHalf(max(sum.y - sum.x * sum.x, 0.0)) << 16);
 #else
-    surface.word[index] = packRadiance(sum);
+    irradiance.word[index] = packRadiance(sum);
 #endif
 }

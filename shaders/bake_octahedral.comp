@@ -15,7 +15,7 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (at.x >= size || at.y >= size) return;
     uint index = at.y * size + at.x;
-    uint texels = 6u * size * size; // extra holds the faces' radiance, then their surfaces
+    uint texels = 6u * size * size; // extra holds the faces' radiance, their surfaces, and their emission
     vec3 direction = directionFromOctahedral((vec2(at) + 0.5) / float(size));
     int face = dominantFace(direction);
     vec3 uvw = faceCoordinates(face, direction);
@@ -24,6 +24,7 @@ void main()
     uint source = (uint(face) * size + texel.y) * size + texel.x;
     radiance.word[index] = extra.word[source];
     surface.word[index] = extra.word[texels + source];
+    if (!isNull(emitted)) emitted.word[index] = extra.word[2u * texels + source];
     ivec2 pixel = ivec2(texel.x, uint(face) * size + texel.y);
     float depth = texelFetch(depthImage, pixel, 0).x;
     if (depth <= 0.0)

@@ -24,7 +24,12 @@ layout(scalar, push_constant) uniform Push
     uint level;         // chain: the level written
     vec3 sky;
     float skyDistance;  // that the moments count for sky, field units
+    BakeWords emitted;  // emission a radiance texel, R11G11B10F; null: the scene has no emitters
+    uint reflectedOnly; // the gathers leave out emission and sky, which the list of lights has brought already
+    uint unused;
 };
+
+bool isNull(BakeWords words) { return uvec2(words) == uvec2(0u); }
 
 /// Position of a texel's centre on its face, in [-1,1].
 vec2 texelOnFace(uvec2 texel, uint faceSize) { return (vec2(texel) + 0.5) * (2.0 / float(faceSize)) - 1.0; }

@@ -24,6 +24,7 @@ void main()
         words.word[wordIndex] = 0u;
         radiance.word[index] = packRadiance(sky);
         surface.word[index] = 0u;
+        if (!isNull(emitted)) emitted.word[index] = 0u;
         return;
     }
     uvec4 seen = texelFetch(surfaceImage, pixel, 0);
@@ -47,5 +48,6 @@ void main()
     uint lightCount = lightsHeader.deltaCount + lightsHeader.emitterCount + lightsHeader.skyCount;
     vec3 irradiance = directLight(p, shading, geometric, 0u, lightCount);
     radiance.word[index] = packRadiance(emission + albedo * irradiance / SCONCE_BRDF_PI);
-    surface.word[index] = packAlbedo(albedo) | (packNormal8(shading) << 16);
+    if (!isNull(emitted)) emitted.word[index] = seen.w;
+    surface.word[index] = max(packAlbedo(albedo) | (packNormal8(shading) << 16), 1u); // 0 is the sky's
 }

@@ -1,5 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifndef MASKED
+#define SCONCE_POSITIONS_ONLY
+#endif
 #include "scene_vertex.glsl"
 
 // Depth of the scene from a light. With MASKED, what shadow_masked.frag needs to cut holes.
