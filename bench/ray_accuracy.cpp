@@ -26,7 +26,6 @@ namespace
 {
 
 constexpr size_t kLeastViewpoints = 8; // cameras and interior points the rays' surfaces are seen from
-constexpr float kB0PlusOffset = 0.01f; // metres, along the start surface's normal
 
 struct Options
 {
@@ -74,7 +73,8 @@ Result<Row> measure(Gpu& gpu, const RaySet& set, const std::string& file)
     if (auto status = tracer->trace(rays, hits, &row.milliseconds); !status) return status.error();
     std::vector<TracedRay> traced(hits.size());
     for (size_t i = 0; i < hits.size(); ++i)
-        traced[i] = {TraceStatus(hits[i].status), hits[i].t, uint32_t(hits[i].handoffs), uint32_t(hits[i].distanceReads), uint32_t(hits[i].indexReads)};
+        traced[i] = {TraceStatus(hits[i].status), hits[i].t, uint32_t(hits[i].handoffs), uint32_t(hits[i].distanceReads),
+                     uint32_t(hits[i].indexReads)};
     row.score = scoreTraces(set, traced);
     return row;
 }
@@ -100,9 +100,10 @@ nlohmann::ordered_json toJson(const Row& row)
 void print(const Row& row)
 {
     const TraceScore& s = row.score;
-    std::printf("%-7s %6u  %6.2f %6.2f  %5.2f %5.2f %5.2f  %6.1f %5u %6u  %5.1f  %5.2f  %9.0f  %s\n", row.tracer.c_str(), row.probes, 100 * s.right1,
-                100 * s.right02, 100 * s.falseHit, 100 * s.leak, 100 * s.unresolved, s.distanceReads.mean, s.distanceReads.p95, s.distanceReads.max,
-                s.indexReads.mean, s.handoffs.mean, row.milliseconds, std::filesystem::path(row.field).filename().c_str());
+    std::printf("%-7s %6u  %6.2f %6.2f  %5.2f %5.2f %5.2f  %6.1f %5u %6u  %5.1f  %5.2f  %9.0f  %s\n", row.tracer.c_str(), row.probes,
+                100 * s.right1, 100 * s.right02, 100 * s.falseHit, 100 * s.leak, 100 * s.unresolved, s.distanceReads.mean,
+                s.distanceReads.p95, s.distanceReads.max, s.indexReads.mean, s.handoffs.mean, row.milliseconds,
+                std::filesystem::path(row.field).filename().c_str());
 }
 
 Status run(const Options& options)
@@ -119,15 +120,18 @@ Status run(const Options& options)
     if (!gpu) return gpu.error();
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     if (!options.json)
-        std::printf("%zu rays, %s; per cent right within 1 %% and 0.2 %% of the diagonal, false, leak, unresolved; reads a ray mean, p95, max\n"
-                    "tracer  probes     1 %%  0.2 %%  false  leak unres    mean   p95    max  index  hands   trace ms  field\n",
-                    set->size(), device->name().c_str());
+        std::printf(
+            "%zu rays, %s; per cent right within 1 %% and 0.2 %% of the diagonal, false, leak, unresolved; reads a ray mean, p95, max\n"
+            "tracer  probes     1 %%  0.2 %%  false  leak unres    mean   p95    max  index  hands   trace ms  field\n",
+            set->size(), device->name().c_str());
     for (const std::string& file : options.fields)
     {
         auto row = measure(**gpu, *set, file);
         if (!row) return row.error();
-        if (options.json) json.push_back(toJson(*row));
-        else print(*row);
+        if (options.json)
+            json.push_back(toJson(*row));
+        else
+            print(*row);
     }
     if (options.json) std::cout << json.dump(2) << std::endl;
     return success();

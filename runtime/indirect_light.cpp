@@ -11,13 +11,6 @@ namespace
 
 constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 
-struct DenoisePush
-{
-    int radius = 3; // pixels: the glossy term varies fast (McGuire et al. 2017, section 5.1)
-    int stride = 1;
-    int followRoughness = 1;
-};
-
 } // namespace
 
 Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, bool second, uint32_t pushBytes)

@@ -23,6 +23,14 @@ struct IndirectEffects
     bool denoise = true; // of the glossy term
 };
 
+/// Push constants of denoise.comp. McGuire et al. 2017, section 5.1: narrow for the glossy term, which varies fast, wide for the diffuse.
+struct DenoisePush
+{
+    int radius = 3;          // pixels
+    int stride = 1;          // pixels between taps
+    int followRoughness = 1; // 1: a pixel's radius shrinks with its roughness, to nothing for a mirror
+};
+
 /// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
 class IndirectLight
 {
@@ -43,7 +51,10 @@ public:
 
     // Outputs, RGBA32F; empty when the effect is off.
     const GpuImage& glossy() const { return smoothGlossy ? smoothGlossy : noisyGlossy; } // rgb radiance reflected to the eye, BRDF included
-    const GpuImage& diffuse() const { return diffuseImage; }                             // rgb cosine-weighted mean radiance, no albedo
+    const GpuImage& diffuse() const
+    {
+        return diffuseImage;
+    } // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light straight from emitters or sky
     const GpuImage& counts() const { return countImage; } // RGBA32UI: probe, hand-offs, reads, unknown rays; of the glossy trace
     uint64_t deviceBytes() const;
 

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "spirv/area_light_comp.h"
 #include "spirv/compose_comp.h"
+#include "spirv/denoise_comp.h"
 #include "spirv/direct_comp.h"
 #include "spirv/gbuffer_frag.h"
 #include "spirv/gbuffer_vert.h"
@@ -25,6 +27,15 @@ struct DirectPush
     vec3 sky;
     uint32_t lightCount;
 };
+
+struct AreaPush
+{
+    vec3 origin;
+    float scale;
+    uint32_t samples;
+};
+
+constexpr DenoisePush kWideFilter{.radius = 12, .stride = 2, .followRoughness = 0};
 
 struct CameraBasis
 {
@@ -109,9 +120,14 @@ Status SceneRenderer::make()
                                 {&emission, "emission"},
                                 {&geometricNormal, "geometric normals"}})
         if (auto s = image(*target, kGBufferFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
-    for (auto [target, what] : {std::pair{&direct, "direct light"}, {&beauty, "picture"}, {&black, "placeholder of an effect that is off"}})
+    for (auto [target, what] : {std::pair{&direct, "direct light"},
+                                {&beauty, "picture"},
+                                {&black, "placeholder of an effect that is off"},
+                                {&noisyDiffuse, "diffuse light"},
+                                {&smoothDiffuse, "denoised diffuse light"}})
     {
         if (target == &black && effects.diffuse && effects.glossy) continue;
+        if ((target == &noisyDiffuse || target == &smoothDiffuse) && !effects.diffuse) continue;
         if (auto s = image(*target, kLightFormat, VK_IMAGE_USAGE_STORAGE_BIT, what); !s) return s;
         auto status = gpu.submit(
             [&](VkCommandBuffer cmd)
@@ -153,6 +169,19 @@ Status SceneRenderer::make()
     directSet.write(5, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(6, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
 
+    if (effects.diffuse)
+    {
+        const DescriptorSet::Binding areaBindings[] = {
+            {4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+        if (auto s = makePass(areaPass, areaSet, area_light_comp, areaBindings, sizeof(AreaPush), scene.layout()); !s) return s;
+        areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
+        areaSet.write(6, noisyDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
+        const DescriptorSet::Binding denoiseBindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+        if (auto s = makePass(denoisePass, denoiseSet, denoise_comp, denoiseBindings, sizeof(DenoisePush), scene.layout()); !s) return s;
+        denoiseSet.write(4, noisyDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
+        denoiseSet.write(5, smoothDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
+    }
     const DescriptorSet::Binding composeBindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                       {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                       {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
@@ -160,7 +189,7 @@ Status SceneRenderer::make()
     if (auto s = makePass(composePass, composeSet, compose_comp, composeBindings, sizeof(uint32_t), scene.layout()); !s) return s;
     composeSet.write(4, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
     composeSet.write(5, (effects.glossy ? indirect->glossy() : black).view(), VK_IMAGE_LAYOUT_GENERAL);
-    composeSet.write(6, (effects.diffuse ? indirect->diffuse() : black).view(), VK_IMAGE_LAYOUT_GENERAL);
+    composeSet.write(6, (effects.diffuse ? smoothDiffuse : black).view(), VK_IMAGE_LAYOUT_GENERAL);
     composeSet.write(7, beauty.view(), VK_IMAGE_LAYOUT_GENERAL);
     return success();
 }
@@ -264,14 +293,23 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 
     indirect->record(cmd, view, timer);
 
-    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-    if (timer) timer->begin(cmd, "compose");
-    const VkDescriptorSet composeSets[] = {scene.descriptorSet(), composeSet.handle()};
-    composePass.bind(cmd, composeSets);
-    composePass.push(cmd, uint32_t(settings.effects.diffuse ? 1u : 0u) | (settings.effects.glossy ? 2u : 0u));
-    gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
-    if (timer) timer->end(cmd);
+    auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, const auto& push, const char* name)
+    {
+        memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        if (timer) timer->begin(cmd, name);
+        const VkDescriptorSet sets[] = {scene.descriptorSet(), set.handle()};
+        pipeline.bind(cmd, sets);
+        pipeline.push(cmd, push);
+        gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
+        if (timer) timer->end(cmd);
+    };
+    if (settings.effects.diffuse)
+    {
+        pass(areaPass, areaSet, AreaPush{space.origin, space.scale, settings.areaSamples}, "area light");
+        pass(denoisePass, denoiseSet, kWideFilter, "diffuse denoise");
+    }
+    pass(composePass, composeSet, uint32_t(settings.effects.diffuse ? 1u : 0u) | (settings.effects.glossy ? 2u : 0u), "compose");
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }
@@ -321,7 +359,7 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
 
 Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
 {
-    auto timer = GpuTimer::create(gpu, 8);
+    auto timer = GpuTimer::create(gpu, 12);
     if (!timer) return timer.error();
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
@@ -353,7 +391,7 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
     frame.glossyIndirect.assign(pixels, vec3(0.0f));
     frame.counts.assign(pixels, glm::uvec4(gpu::kNoProbe, 0, 0, 0));
     if (settings.effects.diffuse)
-        if (auto s = colors(frame.diffuseIndirect, indirect->diffuse(), general); !s) return s.error();
+        if (auto s = colors(frame.diffuseIndirect, smoothDiffuse, general); !s) return s.error();
     if (settings.effects.glossy)
     {
         if (auto s = colors(frame.glossyIndirect, indirect->glossy(), general); !s) return s.error();

@@ -16,6 +16,7 @@ struct RenderSettings
     uint32_t glossyRays = 1;            // rays a pixel, 1..256; time of the trace grows in proportion
     IndirectEffects effects;
     std::optional<float> roughness; // [0,1]: every surface has this roughness (the benchmark of both papers)
+    uint32_t areaSamples = 8;       // samples of the emitters, and as many of the sky, a pixel, 1..1024; noise falls with the root
     uint32_t seed = 1;
     Spirv glossyShader;         // as in IndirectLight::Desc
     float normalOffset = 1e-4f; // share of the scene's diagonal that rays start off their surface
@@ -59,9 +60,9 @@ private:
     const DeviceScene& scene;
     const LightField& field;
     RenderSettings settings;
-    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, black;
-    Pipeline gBufferPass, directPass, composePass;
-    DescriptorSet directSet, composeSet;
+    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, black, noisyDiffuse, smoothDiffuse;
+    Pipeline gBufferPass, directPass, areaPass, denoisePass, composePass;
+    DescriptorSet directSet, areaSet, denoiseSet, composeSet;
     Buffer frameBlock;
     std::optional<IndirectLight> indirect;
     SceneDraws draws;

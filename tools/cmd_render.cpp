@@ -140,10 +140,7 @@ int runRender(const RenderOptions& options, const Context& context)
     if (!device) return fail(device.error());
     Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
-    // A frame's direct light is that of the lights without area; emitters and sky are in the probes.
-    DeviceSceneDesc desc;
-    desc.light.emitterSamples = desc.light.skySamples = 0;
-    Result<DeviceScene> deviceScene = DeviceScene::create(**gpu, *scene, data->info, desc, consoleProgress(context));
+    Result<DeviceScene> deviceScene = DeviceScene::create(**gpu, *scene, data->info, {}, consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
     Result<LightField> field = LightField::create(**gpu, *data);
     if (!field) return fail(field.error());
@@ -151,11 +148,16 @@ int runRender(const RenderOptions& options, const Context& context)
     settings.width = options.width;
     settings.height = options.height;
     settings.glossyRays = options.samples;
+    settings.areaSamples *= options.samples;
     settings.effects = *effects;
     settings.effects.denoise = effects->denoise && !options.noDenoise;
     settings.roughness = options.roughness;
     settings.seed = options.seed;
-    if (options.tracer == "b0plus") settings.glossyShader = traceGlossyB0Plus();
+    if (options.tracer == "b0plus")
+    {
+        settings.glossyShader = traceGlossyB0Plus();
+        settings.normalOffset += kB0PlusOffset / (data->info.diagonal * data->info.scale);
+    }
     Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(**gpu, *deviceScene, *field, settings);
     if (!renderer) return fail(renderer.error());
 
@@ -225,7 +227,8 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->type_name("ours|b0plus");
     command
         ->add_option("--samples", options->samples,
-                     "Glossy rays a pixel; noise falls with the square root, time grows in proportion (default: 1; range: 1 to 64)")
+                     "Glossy rays a pixel, and eight times as many samples of emitters and of the sky; noise falls with the square root, "
+                     "time grows in proportion (default: 1; range: 1 to 64)")
         ->check(unlisted(CLI::Range(1u, 64u)))
         ->type_name("N");
     command->add_flag("--no-denoise", options->noDenoise, "Leaves the glossy term unfiltered (default: filtered)");
