@@ -1,0 +1,184 @@
+// A whole frame, from triangles to a picture, against the path-traced truth.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/reference.h"
+#include "runtime/bake.h"
+#include "runtime/scene_renderer.h"
+#include "scene/builtin_scenes.h"
+#include "tests/support/device.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+constexpr uint32_t kSide = 96; // pixels
+
+class SceneRendererTest : public DeviceTest
+{
+protected:
+    struct Pictures
+    {
+        RenderedFrame frame;
+        ImageSet truth;
+    };
+
+    static RenderSettings settingsFor()
+    {
+        RenderSettings settings;
+        settings.width = settings.height = kSide;
+        settings.glossyRays = 16;
+        settings.areaSamples = 64;
+        return settings;
+    }
+
+    static Result<RenderedFrame> draw(const Scene& scene, std::span<const vec3> probes, const RenderSettings& settings,
+                                      uint32_t resolution = 128)
+    {
+        BakeSettings bake;
+        bake.resolution = resolution;
+        BakeReport report;
+        auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        if (!field) return field.error();
+        auto device = DeviceScene::create(gpu(), scene, field->info);
+        if (!device) return device.error();
+        auto light = LightField::create(gpu(), *field);
+        if (!light) return light.error();
+        auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
+        if (!renderer) return renderer.error();
+        return (*renderer)->render(scene.cameras.front());
+    }
+
+    static ImageSet truthOf(const Scene& scene, uint32_t samples)
+    {
+        ReferenceSettings settings;
+        settings.width = settings.height = kSide;
+        settings.samples = samples;
+        settings.pixelCentre = true;
+        settings.camera = scene.cameras.front();
+        return std::move(renderReference(scene, settings)->images);
+    }
+};
+
+const std::vector<vec3> kCornellProbes = {{0.0f, 1.5f, 0.5f},    {-0.8f, 0.5f, 0.6f},  {0.8f, 0.5f, -0.4f}, {0.6f, 1.2f, 0.2f},
+                                          {-0.75f, 1.0f, -0.8f}, {0.3f, 0.9f, -0.75f}, {0.0f, 0.3f, 0.85f}};
+
+/// Mean over all pixels and channels.
+double mean(std::span<const float> values)
+{
+    double sum = 0.0;
+    for (float v : values) sum += v;
+    return sum / double(values.size());
+}
+std::span<const float> floats(const std::vector<vec3>& pixels)
+{
+    return {&pixels[0].x, 3 * pixels.size()};
+}
+
+/// Mean of |a - b| over the mean of b: noise of the truth and of the frame are both in it.
+double relativeDifference(std::span<const float> a, std::span<const float> b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+    return sum / double(a.size()) / mean(b);
+}
+
+TEST_F(SceneRendererTest, CornellMatchesThePathTracer)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    const auto frame = draw(scene, kCornellProbes, settingsFor(), 512);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const ImageSet truth = truthOf(scene, 512);
+    EXPECT_LT(relativeDifference(floats(frame->direct), truth.find("direct")->pixels), 0.01) << "the lamp itself";
+    EXPECT_NEAR(mean(floats(frame->diffuseIndirect)) / mean(truth.find("diffuse_indirect")->pixels), 1.0, 0.1);
+    EXPECT_LT(relativeDifference(floats(frame->diffuseIndirect), truth.find("diffuse_indirect")->pixels), 0.3);
+    EXPECT_NEAR(mean(floats(frame->glossyIndirect)) / mean(truth.find("glossy_indirect")->pixels), 1.0, 0.15);
+    EXPECT_LT(relativeDifference(floats(frame->glossyIndirect), truth.find("glossy_indirect")->pixels), 0.4);
+    size_t unknown = 0;
+    for (const auto& count : frame->counts) unknown += count.w;
+    EXPECT_LT(double(unknown), 0.02 * 16 * kSide * kSide);
+}
+
+TEST_F(SceneRendererTest, GBufferIsWhatThePathTracerSees)
+{
+    const Scene scene = *makeBuiltinScene("temple");
+    RenderSettings settings = settingsFor();
+    settings.effects = {.diffuse = false, .glossy = false, .denoise = false};
+    const auto frame = draw(scene, std::vector{scene.cameras.front().eye}, settings);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const ImageSet truth = truthOf(scene, 1);
+    size_t depth = 0, normal = 0, albedo = 0, direct = 0;
+    const size_t pixels = size_t(kSide) * kSide;
+    for (size_t i = 0; i < pixels; ++i)
+    {
+        depth += std::abs(frame->depth[i] - truth.find("depth")->pixels[i]) > 1e-3f * truth.find("depth")->pixels[i];
+        for (int c = 0; c < 3; ++c)
+        {
+            normal += std::abs(frame->normal[i][c] - truth.find("normal")->pixels[3 * i + c]) > 0.01f;
+            albedo += std::abs(frame->albedo[i][c] - truth.find("albedo")->pixels[3 * i + c]) > 0.01f;
+            direct += std::abs(frame->direct[i][c] - truth.find("direct")->pixels[3 * i + c]) >
+                      0.05f * (0.1f + truth.find("direct")->pixels[3 * i + c]);
+        }
+    }
+    EXPECT_LT(depth, pixels / 100) << "silhouettes may round to the other side";
+    EXPECT_LT(normal, 3 * pixels / 100);
+    EXPECT_LT(albedo, 3 * pixels / 100);
+    EXPECT_LT(direct, 3 * pixels / 25) << "the sun's shadow map is a texel wide of the truth along shadows' edges";
+}
+
+TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    RenderSettings settings = settingsFor();
+    settings.glossyRays = 1;
+    const auto all = draw(scene, kCornellProbes, settings);
+    settings.effects.glossy = false;
+    const auto diffuseOnly = draw(scene, kCornellProbes, settings);
+    ASSERT_TRUE(all && diffuseOnly);
+    EXPECT_EQ(all->diffuseIndirect, diffuseOnly->diffuseIndirect) << "to the bit";
+    EXPECT_EQ(all->direct, diffuseOnly->direct);
+    for (const vec3& pixel : diffuseOnly->glossyIndirect) EXPECT_EQ(pixel, vec3(0.0f));
+    for (size_t i = 0; i < all->beauty.size(); ++i)
+        EXPECT_EQ(diffuseOnly->beauty[i], diffuseOnly->direct[i] + diffuseOnly->diffuseIndirect[i]);
+}
+
+TEST_F(SceneRendererTest, SameFrameTwiceIsTheSameToTheBit)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    RenderSettings settings = settingsFor();
+    settings.glossyRays = 1;
+    const auto a = draw(scene, kCornellProbes, settings), b = draw(scene, kCornellProbes, settings);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->beauty, b->beauty);
+}
+
+TEST_F(SceneRendererTest, OddSizesWork)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    for (auto [width, height] : {std::pair{1u, 1u}, {1u, 67u}, {131u, 3u}})
+    {
+        RenderSettings settings = settingsFor();
+        settings.width = width;
+        settings.height = height;
+        settings.glossyRays = 1;
+        const auto frame = draw(scene, std::span(kCornellProbes).first(1), settings);
+        ASSERT_TRUE(frame) << frame.error().message;
+        for (const vec3& pixel : frame->beauty) EXPECT_TRUE(std::isfinite(pixel.x + pixel.y + pixel.z));
+    }
+}
+
+TEST_F(SceneRendererTest, EmptyFrameIsRefusedWithASentence)
+{
+    RenderSettings settings = settingsFor();
+    settings.width = 0;
+    const auto frame = draw(*makeBuiltinScene("cornell"), std::span(kCornellProbes).first(1), settings);
+    ASSERT_FALSE(frame);
+    EXPECT_NE(frame.error().message.find("0x96"), std::string::npos);
+}
+
+} // namespace
+} // namespace sconce
