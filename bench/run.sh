@@ -2,13 +2,13 @@
 # Places, bakes, renders, references and compares: bench/run.sh [SCENE...], each a built-in name or a .gltf/.glb file
 # [default: cornell-glossy]. Results: out/SCENE/{report.md,index.html,results.json,*.png,*.exr}.
 # Environment: SIZE=WxH [480x270], SPP=N of the reference [64], RESOLUTION=texels [512], BOUNCES=N [2], COUNT=probes [by coverage],
-# ROUGHNESS=0..1 of every surface [the materials' own], CAMERA=name [the first], OUT=folder [out].
+# FRAMES=N timed, the median counts [5], ROUGHNESS=0..1 of every surface [the materials' own], CAMERA=name [the first], OUT=folder [out].
 set -euo pipefail
 start=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
 
-size=${SIZE:-480x270} spp=${SPP:-64} resolution=${RESOLUTION:-512} bounces=${BOUNCES:-2}
+size=${SIZE:-480x270} spp=${SPP:-64} resolution=${RESOLUTION:-512} bounces=${BOUNCES:-2} frames=${FRAMES:-5}
 out=${OUT:-$root/out}
 [[ $out = /* ]] || out=$start/$out
 scenes=("$@")
@@ -50,8 +50,8 @@ for scene in "${scenes[@]}"; do
     step "$folder/bake_grid.json" "$sconce" bake "$scene" --probes "$folder/probes_grid.json" -o "$folder/grid.sconce" --resolution "$resolution" --bounces "$bounces" --chart octahedral
     step "$folder/reference.json" "$sconce" reference "$scene" "${picture[@]}" --spp "$spp" --bounces "$bounces" --pixel-centre -o "$folder/reference.exr" --png "$folder/reference.png"
     exposure=$(value "$folder/reference.json" exposure)
-    step "$folder/render_ours.json" "$sconce" render "$scene" --field "$folder/ours.sconce" "${picture[@]}" -o "$folder/ours.exr" --png "$folder/ours.png" --exposure "$exposure"
-    step "$folder/render_b0plus.json" "$sconce" render "$scene" --field "$folder/grid.sconce" --tracer b0plus "${picture[@]}" -o "$folder/b0plus.exr" --png "$folder/b0plus.png" --exposure "$exposure"
+    step "$folder/render_ours.json" "$sconce" render "$scene" --frames "$frames" --field "$folder/ours.sconce" "${picture[@]}" -o "$folder/ours.exr" --png "$folder/ours.png" --exposure "$exposure"
+    step "$folder/render_b0plus.json" "$sconce" render "$scene" --frames "$frames" --field "$folder/grid.sconce" --tracer b0plus "${picture[@]}" -o "$folder/b0plus.exr" --png "$folder/b0plus.png" --exposure "$exposure"
     for tracer in ours b0plus; do
         step "$folder/compare_$tracer.json" "$sconce" compare "$folder/$tracer.exr" "$folder/reference.exr" -o "$folder/error_$tracer.png"
     done

@@ -249,6 +249,44 @@ TEST(Command, PipelineFromSceneToHits)
     EXPECT_FALSE(std::filesystem::exists(folder / "hits2.csv"));
 }
 
+// The frame as a user gets it; what `auto` leaves out must not change a bit of it.
+TEST(Command, RenderWritesTheLayersThatWereAskedFor)
+{
+    const TestFolder folder;
+    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--grid", "1x1x2", "-q"}).exit, 0);
+    const CommandResult bake =
+        sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "64", "-q"}, 120.0);
+    ASSERT_EQ(bake.exit, 0) << bake.err;
+    EXPECT_EQ(bake.err, ""); // the validation layer's messages would stand here
+    const std::vector<std::string> base = {"render", "cornell", "--field", folder / "f.sconce", "--size", "40x24"};
+    const auto render = [&](const std::string& name, std::vector<std::string> more)
+    {
+        std::vector<std::string> arguments = base;
+        arguments.insert(arguments.end(), {"-o", folder / name});
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return sconceCommand(arguments);
+    };
+    const CommandResult all = render("all.exr", {"--effects", "all", "--json", "--png", folder / "all.png", "--frames", "2"});
+    ASSERT_EQ(all.exit, 0) << all.err;
+    const json report = jsonOf(all);
+    EXPECT_EQ(report.at("layers").size(), 12u) << report.at("layers");
+    EXPECT_EQ(report.at("width"), 40);
+    EXPECT_GT(report.at("peak_rss_mb").get<double>(), 1.0);
+    EXPECT_GE(report.at("unknown_share").get<double>(), 0.0);
+    EXPECT_EQ(readText(folder / "all.png").substr(1, 3), "PNG");
+    const CommandResult quiet = render("auto.exr", {"-q"});
+    ASSERT_EQ(quiet.exit, 0);
+    EXPECT_EQ(quiet.err, "");
+    EXPECT_EQ(jsonOf(sconceCommand({"compare", folder / "auto.exr", folder / "all.exr", "--metric", "mse", "--json"})).at("mse"), 0.0);
+    EXPECT_EQ(jsonOf(render("none.exr", {"--effects", "none", "--json", "--aov", "beauty,depth"})).at("layers"), json({"beauty", "depth"}));
+
+    EXPECT_EQ(render("x.exr", {"--effects", "sparkle"}).exit, 2);
+    EXPECT_EQ(render("x.exr", {"--aov", "sparkle"}).exit, 2);
+    EXPECT_EQ(render("x.exr", {"--tracer", "b0plus", "-q"}).exit, 3); // the field has cube faces
+    EXPECT_EQ(sconceCommand({"render", "cornell", "--field", folder / "none.sconce", "-o", folder / "x.exr"}).exit, 5);
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
+}
+
 TEST(Command, ReferenceAndCompareAgree)
 {
     const TestFolder folder;
