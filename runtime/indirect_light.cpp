@@ -1,6 +1,5 @@
 #include "runtime/indirect_light.h"
 
-#include "spirv/denoise_comp.h"
 #include "spirv/gather_diffuse_comp.h"
 #include "spirv/trace_glossy_comp.h"
 
@@ -13,20 +12,14 @@ constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 } // namespace
 
-Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, bool second, uint32_t pushBytes)
+Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, uint32_t storageImages)
 {
-    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                                    {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    if (second) bindings.push_back({5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
-    auto made = DescriptorSet::create(*gpu, bindings);
+    const DescriptorSet::Binding images[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    auto made = makeFrameSet(*gpu, frame, std::span(images).first(storageImages));
     if (!made) return made.error();
     set = std::move(*made);
-    set.write(3, frame);
     const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
-    auto built = Pipeline::compute(*gpu, shader, layouts, pushBytes);
+    auto built = Pipeline::compute(*gpu, shader, layouts, 0);
     if (!built) return built.error();
     pipeline = std::move(*built);
     return success();
@@ -70,21 +63,21 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
         if (auto s = image(made.noisyGlossy, kLightFormat, "glossy light"); !s) return s.error();
         if (auto s = image(made.countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s.error();
         const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
-        if (auto s = made.makePass(made.glossyPass, made.glossySet, shader, true, 0); !s) return s.error();
+        if (auto s = made.makePass(made.glossyPass, made.glossySet, shader, 2); !s) return s.error();
         made.glossySet.write(4, made.noisyGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
         made.glossySet.write(5, made.countImage.view(), VK_IMAGE_LAYOUT_GENERAL);
         if (desc.effects.denoise)
         {
             if (auto s = image(made.smoothGlossy, kLightFormat, "denoised glossy light"); !s) return s.error();
-            if (auto s = made.makePass(made.denoisePass, made.denoiseSet, denoise_comp, true, sizeof(DenoisePush)); !s) return s.error();
-            made.denoiseSet.write(4, made.noisyGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
-            made.denoiseSet.write(5, made.smoothGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
+            auto denoiser = Denoiser::create(gpu, field.layout(), made.frame, made.noisyGlossy, made.smoothGlossy);
+            if (!denoiser) return denoiser.error();
+            made.denoiser = std::move(*denoiser);
         }
     }
     if (desc.effects.diffuse)
     {
         if (auto s = image(made.diffuseImage, kLightFormat, "diffuse light"); !s) return s.error();
-        if (auto s = made.makePass(made.diffusePass, made.diffuseSet, gather_diffuse_comp, false, 0); !s) return s.error();
+        if (auto s = made.makePass(made.diffusePass, made.diffuseSet, gather_diffuse_comp, 1); !s) return s.error();
         made.diffuseSet.write(4, made.diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
     }
     return made;
@@ -92,13 +85,9 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
 
 void IndirectLight::setInputs(const FrameInputs& inputs)
 {
-    for (auto [pipeline, set] : {std::pair{&glossyPass, &glossySet}, {&diffusePass, &diffuseSet}, {&denoisePass, &denoiseSet}})
-    {
-        if (!*pipeline) continue;
-        set->write(0, inputs.depth, inputs.layout);
-        set->write(1, inputs.normalRoughness, inputs.layout);
-        set->write(2, inputs.baseColorMetallic, inputs.layout);
-    }
+    if (glossyPass) writeInputs(glossySet, inputs);
+    if (diffusePass) writeInputs(diffuseSet, inputs);
+    if (denoiser) denoiser.setInputs(inputs);
 }
 
 void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
@@ -115,16 +104,16 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
         if (timer) timer->begin(cmd, name);
         const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
         pipeline.bind(cmd, sets);
-        if (&pipeline == &denoisePass) pipeline.push(cmd, DenoisePush{});
         gpu->vk.CmdDispatch(cmd, (desc.width + 7) / 8, (desc.height + 7) / 8, 1);
         if (timer) timer->end(cmd);
     };
     if (glossyPass) dispatch(glossyPass, glossySet, "glossy trace");
     if (diffusePass) dispatch(diffusePass, diffuseSet, "diffuse gather");
-    if (denoisePass)
+    if (denoiser)
     {
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
-        dispatch(denoisePass, denoiseSet, "denoise");
+        if (timer) timer->begin(cmd, "denoise");
+        denoiser.record(cmd, field->descriptorSet(), desc.width, desc.height, true);
+        if (timer) timer->end(cmd);
     }
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);

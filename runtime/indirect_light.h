@@ -1,19 +1,12 @@
 #pragma once
 
+#include "runtime/denoiser.h"
+#include "runtime/frame_inputs.h"
 #include "runtime/light_field.h"
 #include "shaders/shared/frame.h"
 
 namespace sconce
 {
-
-/// A host's G-buffer. All views are of 2D images in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL or GENERAL (say which), of one size.
-struct FrameInputs
-{
-    VkImageView depth = VK_NULL_HANDLE;             // reversed: 1 at the near plane, 0 where nothing was drawn
-    VkImageView normalRoughness = VK_NULL_HANDLE;   // xyz shading normal, world, unit, on the viewer's side; w roughness [0,1]
-    VkImageView baseColorMetallic = VK_NULL_HANDLE; // rgb linear, a metallic
-    VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-};
 
 /// Which of the indirect terms a frame has; what is off has no pipeline, no image and no dispatch.
 struct IndirectEffects
@@ -21,14 +14,6 @@ struct IndirectEffects
     bool diffuse = true;
     bool glossy = true;
     bool denoise = true; // of the glossy term
-};
-
-/// Push constants of denoise.comp. McGuire et al. 2017, section 5.1: narrow for the glossy term, which varies fast, wide for the diffuse.
-struct DenoisePush
-{
-    int radius = 3;          // pixels
-    int stride = 1;          // pixels between taps
-    int followRoughness = 1; // 1: a pixel's radius shrinks with its roughness, to nothing for a mirror
 };
 
 /// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
@@ -60,14 +45,15 @@ public:
 
 private:
     IndirectLight() = default;
-    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, bool second, uint32_t pushBytes);
+    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, uint32_t storageImages);
     Gpu* gpu = nullptr;
     const LightField* field = nullptr;
     Desc desc;
     Buffer frame;
     GpuImage noisyGlossy, smoothGlossy, countImage, diffuseImage;
-    DescriptorSet glossySet, diffuseSet, denoiseSet;
-    Pipeline glossyPass, diffusePass, denoisePass;
+    DescriptorSet glossySet, diffuseSet;
+    Pipeline glossyPass, diffusePass;
+    Denoiser denoiser;
 };
 
 } // namespace sconce

@@ -5,7 +5,6 @@
 
 #include "spirv/area_light_comp.h"
 #include "spirv/compose_comp.h"
-#include "spirv/denoise_comp.h"
 #include "spirv/direct_comp.h"
 #include "spirv/gbuffer_frag.h"
 #include "spirv/gbuffer_vert.h"
@@ -34,8 +33,6 @@ struct AreaPush
     float scale;
     uint32_t samples;
 };
-
-constexpr DenoisePush kWideFilter{.radius = 12, .stride = 2, .followRoughness = 0};
 
 struct CameraBasis
 {
@@ -75,19 +72,10 @@ mat4 worldFromClip(const Camera& camera, const CameraBasis& basis, const gpu::Li
 Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
                                uint32_t pushBytes, VkDescriptorSetLayout first)
 {
-    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-    bindings.insert(bindings.end(), extra.begin(), extra.end());
-    auto made = DescriptorSet::create(gpu, bindings);
+    auto made = makeFrameSet(gpu, frameBlock, extra);
     if (!made) return made.error();
     set = std::move(*made);
-    constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    set.write(0, depth.view(), read);
-    set.write(1, normalRoughness.view(), read);
-    set.write(2, baseColorMetallic.view(), read);
-    set.write(3, frameBlock);
+    writeInputs(set, gBuffer);
     const VkDescriptorSetLayout layouts[] = {first, set.layout()};
     auto built = Pipeline::compute(gpu, shader, layouts, pushBytes);
     if (!built) return built.error();
@@ -141,7 +129,8 @@ Status SceneRenderer::make()
     auto block = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
     if (!block) return block.error();
     frameBlock = std::move(*block);
-    indirect->setInputs({depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    indirect->setInputs(gBuffer);
 
     const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kGBufferFormat, kGBufferFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
@@ -177,10 +166,10 @@ Status SceneRenderer::make()
         areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
         areaSet.write(6, noisyDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
-        const DescriptorSet::Binding denoiseBindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-        if (auto s = makePass(denoisePass, denoiseSet, denoise_comp, denoiseBindings, sizeof(DenoisePush), scene.layout()); !s) return s;
-        denoiseSet.write(4, noisyDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
-        denoiseSet.write(5, smoothDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
+        auto made = Denoiser::create(gpu, scene.layout(), frameBlock, noisyDiffuse, smoothDiffuse);
+        if (!made) return made.error();
+        denoiser = std::move(*made);
+        denoiser.setInputs(gBuffer);
     }
     const DescriptorSet::Binding composeBindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                       {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
@@ -307,7 +296,9 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (settings.effects.diffuse)
     {
         pass(areaPass, areaSet, AreaPush{space.origin, space.scale, settings.areaSamples}, "area light");
-        pass(denoisePass, denoiseSet, kWideFilter, "diffuse denoise");
+        if (timer) timer->begin(cmd, "diffuse denoise");
+        denoiser.record(cmd, scene.descriptorSet(), settings.width, settings.height, false);
+        if (timer) timer->end(cmd);
     }
     pass(composePass, composeSet, uint32_t(settings.effects.diffuse ? 1u : 0u) | (settings.effects.glossy ? 2u : 0u), "compose");
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

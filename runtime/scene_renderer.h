@@ -61,9 +61,11 @@ private:
     const LightField& field;
     RenderSettings settings;
     GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, black, noisyDiffuse, smoothDiffuse;
-    Pipeline gBufferPass, directPass, areaPass, denoisePass, composePass;
-    DescriptorSet directSet, areaSet, denoiseSet, composeSet;
+    Pipeline gBufferPass, directPass, areaPass, composePass;
+    DescriptorSet directSet, areaSet, composeSet;
+    Denoiser denoiser;
     Buffer frameBlock;
+    FrameInputs gBuffer;
     std::optional<IndirectLight> indirect;
     SceneDraws draws;
 };

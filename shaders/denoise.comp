@@ -4,17 +4,21 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
 
-// Cross-bilateral filter over the G-buffer (McGuire et al. 2017, section 5.1: a narrow one for glossy light, a wide one for diffuse).
+// One step of a cross-bilateral filter over the G-buffer: 5x5 taps of a B3 spline, `stride` pixels apart; steps of stride 1, 2, 4 reach 14
+// pixels (Dammertz et al. 2010, "Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering"). McGuire et al. 2017,
+// section 5.1, filter glossy light narrowly and diffuse light widely: here a glossy pixel's reach follows its roughness.
 // Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D noisy;
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D smooth_;
 layout(scalar, push_constant) uniform Push
 {
-    int radius;   // pixels
-    int stride;   // pixels between taps
-    int followRoughness; // 1: a glossy pixel's radius shrinks with its roughness, to nothing for a mirror
+    int stride;          // pixels between taps
+    int followRoughness; // 1: the reach shrinks with roughness, to nothing for a mirror
 };
+
+const float kReach = 14.0;                                    // pixels, of all steps together
+const float kSpline[3] = float[](3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0);
 
 void main()
 {
@@ -22,30 +26,30 @@ void main()
     if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
     vec4 own = imageLoad(noisy, at);
     Pixel p = readPixel(at);
-    if (!p.surface)
+    float reach = kReach;
+    if (followRoughness != 0) reach *= clamp(2.5 * p.brdf.roughness - 0.05, 0.0, 1.0) * inversesqrt(float(frame.glossyRays)); // as the noise falls
+    if (!p.surface || reach < float(stride))
     {
         imageStore(smooth_, at, own);
         return;
     }
-    float reach = float(radius);
-    if (followRoughness != 0) reach *= clamp(p.brdf.roughness * 4.0, 0.0, 1.0);
-    vec3 sum = own.rgb;
-    float weights = 1.0;
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
     float toEye = distance(p.position, frame.eye);
-    for (int dy = -radius; dy <= radius; dy += stride)
-        for (int dx = -radius; dx <= radius; dx += stride)
+    for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx)
         {
-            ivec2 tap = at + ivec2(dx, dy);
-            float far2 = float(dx * dx + dy * dy);
-            if ((dx == 0 && dy == 0) || far2 > reach * reach || any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
+            ivec2 tap = at + stride * ivec2(dx, dy);
+            if (float(stride * stride * (dx * dx + dy * dy)) > reach * reach || any(lessThan(tap, ivec2(0))) ||
+                any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
             Pixel q = readPixel(tap);
             if (!q.surface) continue;
             float plane = abs(dot(q.position - p.position, p.normal)) / (0.01 * toEye);
             float facing = max(dot(p.normal, q.normal), 0.0);
             float rough = abs(p.brdf.roughness - q.brdf.roughness) * 8.0;
-            float weight = exp(-2.0 * far2 / (reach * reach + 1e-6) - plane * plane - rough * rough) * pow(facing, 32.0);
+            float weight = kSpline[abs(dx)] * kSpline[abs(dy)] * exp(-plane * plane - rough * rough) * pow(facing, 32.0);
             sum += weight * imageLoad(noisy, tap).rgb;
             weights += weight;
         }
-    imageStore(smooth_, at, vec4(sum / weights, own.a));
+    imageStore(smooth_, at, vec4(weights > 0.0 ? sum / weights : own.rgb, own.a));
 }
