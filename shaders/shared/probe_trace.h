@@ -537,8 +537,8 @@ SCONCE_FN void turn(SCONCE_INOUT(RayState) r)
 /// steps a segment, 8 a turn); a fine event that goes on advances one. Derived, never reached by a ray that makes progress.
 SCONCE_FN int turnLimit() { return (quality.maxHandoffs + 1) * (64 + 6 * int(field.faceSize)); }
 
-/// One ray, field space, unit direction. A ray that is not finite, or has no direction, is a MISS at t = 0 with no probe.
-SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction)
+/// A ray at its start; one that is not finite, or has no unit direction, is done at once: a MISS at t = 0 with no probe.
+SCONCE_FN RayState startRay(vec3 origin, vec3 direction)
 {
     RayState r = beginRay(origin, direction);
     real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
@@ -547,13 +547,17 @@ SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction)
         r.status = kMiss;
         r.phase = kPhaseDone;
     }
-    int limit = turnLimit();
-    for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
+    return r;
+}
+
+/// What a ray has come to; UNKNOWN when it is not done.
+SCONCE_FN TraceResult resultOf(SCONCE_IN(RayState) r)
+{
     TraceResult result;
     result.status = r.phase == kPhaseDone ? r.status : kUnknown;
     result.t = r.t;
     bool seen = result.status != kMiss && r.lastProbe != kNoProbe;
-    result.probe = result.status == kHit ? r.lastProbe : (seen ? r.lastProbe : (result.status == kMiss ? r.probe : kNoProbe));
+    result.probe = seen ? r.lastProbe : (result.status == kMiss ? r.probe : kNoProbe);
     result.face = seen ? r.lastFace : -1;
     result.pixel = r.pixel;
     result.word = seen ? r.hitWord : 0u;
@@ -561,6 +565,15 @@ SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction)
     result.distanceReads = r.distanceReads;
     result.indexReads = r.indexReads;
     return result;
+}
+
+/// One ray, field space, unit direction.
+SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction)
+{
+    RayState r = startRay(origin, direction);
+    int limit = turnLimit();
+    for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
+    return resultOf(r);
 }
 
 /// Unit normal of a texel's plane, field space, facing the probe.

@@ -22,10 +22,9 @@ SCONCE_FN RayHit answer(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r, v
     return hit;
 }
 
-/// A world-space ray through the light field with our tracer. Cost: about 30 distance reads on a cluttered indoor scene.
-SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction)
+/// The answer of our tracer's result.
+SCONCE_FN RayHit answerOf(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
 {
-    TraceResult r = traceRay((origin - vec3(field.origin)) / real(field.scale), direction);
     vec3 normal = vec3(real(0.0));
     vec3 radiance = vec3(real(0.0));
     if (r.face >= 0)
@@ -34,6 +33,12 @@ SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction)
         radiance = surfelRadiance(r);
     }
     return answer(origin, direction, r, normal, radiance);
+}
+
+/// A world-space ray through the light field with our tracer. Cost: about 30 distance reads on a cluttered indoor scene.
+SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction)
+{
+    return answerOf(origin, direction, traceRay((origin - vec3(field.origin)) / real(field.scale), direction));
 }
 
 /// The same with baseline B0+.
