@@ -145,7 +145,10 @@ void rankCell(const ProbeMaps& maps, const Octree& tree, ivec3 cell, VoxelGrid& 
     ProbeView view{maps, {}};
     const vec3 cellCentre = tree.boundsLow + tree.voxel * (float(side) * (vec3(cell) + 0.5f));
     std::vector<std::pair<float, uint16_t>> order(maps.probes.size());
-    for (size_t i = 0; i < order.size(); ++i) order[i] = {glm::distance(cellCentre, vec3(maps.probes[i].centre)), uint16_t(i)};
+    // Distances are those of the cell, not of each voxel: voxels that see alike then rank alike, and collapse.
+    const float nearest = 0.5f * tree.voxel * float(side);
+    for (size_t i = 0; i < order.size(); ++i)
+        order[i] = {std::max(glm::distance(cellCentre, vec3(maps.probes[i].centre)), nearest), uint16_t(i)};
     std::sort(order.begin(), order.end());
     std::vector<Candidate> candidates;
     for (int z = 0; z < side; ++z)
@@ -156,7 +159,7 @@ void rankCell(const ProbeMaps& maps, const Octree& tree, ivec3 cell, VoxelGrid& 
                 const vec3 centre = tree.boundsLow + tree.voxel * (vec3(voxel) + 0.5f);
                 candidates.clear();
                 int full = 0;
-                for (const auto& [unused, probe] : order)
+                for (const auto& [distance, probe] : order)
                 {
                     uint32_t seen = view.sees(probe, centre) ? 1u : 0u;
                     for (uint32_t corner = 0; corner < 8; ++corner)
@@ -165,7 +168,6 @@ void rankCell(const ProbeMaps& maps, const Octree& tree, ivec3 cell, VoxelGrid& 
                         if (view.sees(probe, centre + 0.75f * tree.voxel * offset)) seen |= 2u << corner;
                     }
                     if (!seen) continue;
-                    const float distance = glm::distance(centre, vec3(maps.probes[probe].centre)) + 0.5f * tree.voxel;
                     candidates.push_back({probe, seen, distance});
                     if (std::popcount(seen) == 9 && ++full == kEnough) break;
                 }
