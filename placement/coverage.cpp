@@ -80,8 +80,11 @@ Result<Coverage> measureCoverage(const Scene& scene, const Visibility& visibilit
     coverage.rays = shareSeen(best);
     coverage.area = shareSeen(bestProbes(visibility, spread, probes, spacing));
     std::vector<float> cosines, distances;
+    size_t backs = 0;
     for (size_t s = 0; s < hit.size(); ++s)
     {
+        backs += hit[s].back;
+        coverage.quality.push_back(best[s] == kNobody ? 0.0f : viewQuality(hit[s], probes[best[s]], spacing));
         if (best[s] == kNobody)
         {
             coverage.unseen.push_back(hit[s]);
@@ -91,6 +94,8 @@ Result<Coverage> measureCoverage(const Scene& scene, const Visibility& visibilit
         distances.push_back(glm::length(toProbe));
         cosines.push_back(glm::dot(toProbe, hit[s].normal) / distances.back());
     }
+    coverage.backs = hit.empty() ? 0.0f : float(double(backs) / double(hit.size()));
+    coverage.points = hit;
     coverage.medianCosine = median(cosines);
     coverage.medianDistance = median(distances);
     if (!report(progress, "coverage", 1.0)) return cancelled;

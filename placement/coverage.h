@@ -21,6 +21,9 @@ struct Coverage
     float medianDistance = 0.0f; // metres, the same
     size_t rayPoints = 0;        // sample sizes; 0 when no ray hits anything
     size_t areaPoints = 0;
+    float backs = 0.0f;         // share of the ray points on the backs of single-sided surfaces: above 0.05 the space holds voids
+    std::vector<Surfel> points; // the ray points
+    std::vector<float> quality; // [points] viewQuality of the best probe, 0 where none sees the point
     std::vector<Surfel> unseen; // the ray points that no probe sees
 };
 

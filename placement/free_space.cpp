@@ -216,43 +216,74 @@ uint32_t mostEnclosedRegion(const DistanceField& field, const Regions& regions, 
     return best;
 }
 
-/// Rule 3: keeps what is enclosed of the reached cells. Judged per block of cells, at the block's cell that is farthest from surfaces.
-void keepEnclosed(FreeSpace& space, float leastAround, const Visibility& visibility)
+/// The reached cells in pieces: those of a block of cells that are joined within it. A wall through a block parts it, so that the void
+/// behind a wall is never judged by the room before it.
+struct Pieces
+{
+    std::vector<uint32_t> of;     // [cells] piece, or kNoRegion where not reached
+    std::vector<uint32_t> widest; // [pieces] the cell farthest from surfaces
+};
+
+Pieces piecesOf(const FreeSpace& space)
 {
     constexpr size_t kBlocks = 24000;
     const DistanceField& field = space.field;
     const size_t reached = size_t(std::count(space.reachable.begin(), space.reachable.end(), uint8_t(1)));
     const int side = std::max(1, int(std::ceil(std::cbrt(double(reached) / double(kBlocks)))));
-    const glm::ivec3 blocks = (field.size + side - 1) / side;
-    const auto blockOf = [&](size_t at)
+    const size_t stride[3] = {1, size_t(field.size.x), size_t(field.size.x) * size_t(field.size.y)};
+    Pieces pieces;
+    pieces.of.assign(field.cells(), kNoRegion);
+    std::vector<uint32_t> open;
+    for (size_t first = 0; first < field.cells(); ++first)
     {
-        const glm::ivec3 block = field.cell(at) / side;
-        return size_t(block.x) + size_t(blocks.x) * (size_t(block.y) + size_t(blocks.y) * size_t(block.z));
-    };
-    std::vector<uint32_t> widest(size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z), kNoRegion);
-    for (size_t at = 0; at < field.cells(); ++at)
-    {
-        if (!space.reachable[at]) continue;
-        uint32_t& best = widest[blockOf(at)];
-        if (best == kNoRegion || field.distance[at] > field.distance[best]) best = uint32_t(at);
+        if (!space.reachable[first] || pieces.of[first] != kNoRegion) continue;
+        const uint32_t piece = uint32_t(pieces.widest.size());
+        const glm::ivec3 low = field.cell(first) / side * side, high = glm::min(low + side, field.size);
+        uint32_t widest = uint32_t(first);
+        pieces.of[first] = piece;
+        open.assign(1, uint32_t(first));
+        while (!open.empty())
+        {
+            const size_t at = open.back();
+            open.pop_back();
+            if (field.distance[at] > field.distance[widest]) widest = uint32_t(at);
+            const glm::ivec3 cell = field.cell(at);
+            for (int axis = 0; axis < 3; ++axis)
+                for (int step = -1; step <= 1; step += 2)
+                {
+                    if (cell[axis] + step < low[axis] || cell[axis] + step >= high[axis]) continue;
+                    const size_t next = step < 0 ? at - stride[axis] : at + stride[axis];
+                    if (!space.reachable[next] || pieces.of[next] != kNoRegion) continue;
+                    pieces.of[next] = piece;
+                    open.push_back(uint32_t(next));
+                }
+        }
+        pieces.widest.push_back(widest);
     }
-    std::vector<Surroundings> seen(widest.size());
-    tbb::parallel_for(size_t(0), widest.size(),
-                      [&](size_t block)
-                      {
-                          if (widest[block] != kNoRegion) seen[block] = lookAround(visibility, field.centre(field.cell(widest[block])));
-                      });
+    return pieces;
+}
+
+/// Rule 3: keeps what is enclosed of the reached cells, judged per piece.
+void keepEnclosed(FreeSpace& space, float leastAround, const Visibility& visibility)
+{
+    const DistanceField& field = space.field;
+    const Pieces pieces = piecesOf(space);
+    std::vector<Surroundings> seen(pieces.widest.size());
+    tbb::parallel_for(size_t(0), seen.size(),
+                      [&](size_t piece) { seen[piece] = lookAround(visibility, field.centre(field.cell(pieces.widest[piece]))); });
     for (const bool mindBacks : {true, false}) // a scene whose winding is all reversed shows backs everywhere: then winding says nothing
     {
-        size_t kept = 0, around = 0;
-        for (size_t block = 0; block < seen.size(); ++block)
+        const Enclosure enclosure{leastAround, mindBacks};
+        size_t kept = 0, around = 0; // cells, so that slivers count for little
+        for (const uint32_t piece : pieces.of)
         {
-            around += widest[block] != kNoRegion && Enclosure{leastAround, false}.keeps(seen[block]);
-            kept += widest[block] != kNoRegion && Enclosure{leastAround, mindBacks}.keeps(seen[block]);
+            if (piece == kNoRegion) continue;
+            around += Enclosure{leastAround, false}.keeps(seen[piece]);
+            kept += enclosure.keeps(seen[piece]);
         }
         if (kept == 0 || 5 * kept < around) continue;
         for (size_t at = 0; at < field.cells(); ++at)
-            if (space.reachable[at] && !Enclosure{leastAround, mindBacks}.keeps(seen[blockOf(at)])) space.reachable[at] = 0;
+            if (space.reachable[at] && !enclosure.keeps(seen[pieces.of[at]])) space.reachable[at] = 0;
         return;
     }
 }

@@ -248,6 +248,7 @@ Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, 
     report.coverageArea = coverage->area;
     report.medianCosine = coverage->medianCosine;
     report.medianDistance = coverage->medianDistance;
+    if (settings.explain) report.picture = drawPlacement(*space, positions, *coverage);
     if (!isGrid && settings.count == 0 && coverage->rays < settings.coverage - 0.001f)
         report.warnings.push_back(
             fmt::format("The coverage reached is {:.2f} %, not the {:.2f} % asked for: of the tested positions all together see "

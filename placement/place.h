@@ -6,6 +6,7 @@
 
 #include "placement/coverage.h"
 #include "placement/free_space.h"
+#include "placement/picture.h"
 #include "placement/probe_set.h"
 #include "scene/progress.h"
 #include "scene/result.h"
@@ -32,6 +33,7 @@ struct PlaceSettings
     float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
     uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
     uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
+    bool explain = false;             // fills PlaceReport::picture
     uint32_t surfels = 40000;         // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
 };
 
@@ -50,6 +52,7 @@ struct PlaceReport
     std::vector<float> newlyCovered; // [probes] sdf: share of the surface points that this probe sees and no earlier one
     uint32_t gridOutside = 0;        // grid: points outside the reachable space
     double seconds = 0.0;
+    Picture picture;                   // when settings.explain: drawPlacement
     std::vector<std::string> warnings; // a sentence each
 };
 

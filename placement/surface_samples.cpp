@@ -41,7 +41,7 @@ std::vector<Surfel> raySurfels(const Visibility& visibility, const FreeSpace& sp
                        const vec3 direction = random.direction();
                        RayHit hit;
                        if (!visibility.cast(origin, direction, hit)) return false;
-                       surfel = {origin + hit.t * direction, hit.normal, hit.triangle};
+                       surfel = {origin + hit.t * direction, hit.normal, hit.triangle, hit.back};
                        return true;
                    });
 }
@@ -74,7 +74,7 @@ std::vector<Surfel> areaSurfels(const Scene& scene, const Visibility& visibility
                        {
                            const vec3 before = point + cells * space.field.voxel * normal;
                            if (!space.contains(before) || !visibility.sees(before, point, normal)) continue;
-                           surfel = {point, normal, uint32_t(triangle)};
+                           surfel = {point, normal, uint32_t(triangle), false};
                            return true;
                        }
                        return false;

@@ -15,6 +15,7 @@ struct Surfel
     vec3 position{0.0f};
     vec3 normal{0.0f}; // geometric, unit, toward reachable space
     uint32_t triangle = 0;
+    bool back = false; // the back of a single-sided triangle
 };
 
 inline constexpr float kLeastCosine = 0.05f; // a point seen flatter than this is not seen: its texel would smear over metres

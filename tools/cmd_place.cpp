@@ -1,6 +1,7 @@
 // sconce place: where the probes of a scene go.
 #include <iostream>
 
+#include "bench/image_io.h"
 #include "placement/place.h"
 #include "tools/common.h"
 
@@ -15,6 +16,7 @@ struct PlaceOptions
     SceneOptions scene;
     PlaceSettings settings;
     std::string output;
+    std::string explain;
 };
 
 int runPlace(const PlaceOptions& options, const Context& context)
@@ -28,6 +30,10 @@ int runPlace(const PlaceOptions& options, const Context& context)
     for (const std::string& warning : report.warnings) note(context, "Note: " + warning);
     if (set->scene.empty()) set->scene = scene->name;
     if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());
+
+    if (!options.explain.empty())
+        if (Status status = writePng(report.picture.rgb, report.picture.width, report.picture.height, options.explain); !status)
+            return fail(status.error());
 
     Json json;
     json["probes"] = set->probes.size();
@@ -110,6 +116,11 @@ void addPlaceCommand(CLI::App& app, Context& context)
         ->expected(1)
         ->take_all()
         ->type_name("X,Y,Z");
+    command
+        ->add_option_function<std::string>(
+            "--explain", [options = options.get()](const std::string& file) { options->explain = file, options->settings.explain = true; },
+            "Also writes a picture: plan and section, probes white, surface seen well green, badly yellow, not at all red (default: none)")
+        ->type_name("FILE.png");
     command
         ->add_option("--seed", settings.seed, "Of every random choice; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")
         ->type_name("N");

@@ -1,0 +1,115 @@
+// What a placement is worth beside its yardstick, in one run and on the same samples:
+//   sconce_placement_table SCENE COUNT [COUNT...] [--save PREFIX]
+// Each line: coverage of ray hits and of area in per cent, cosine and distance of the best view (medians), seconds. --save writes
+// PREFIX-COUNT-METHOD.json, for `sconce bake` and sconce_ray_accuracy.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+#include "placement/place.h"
+#include "placement/skeleton.h"
+#include "scene/builtin_scenes.h"
+#include "scene/scene_gltf.h"
+#include "tests/placement/yardstick.h"
+
+namespace sconce
+{
+namespace
+{
+
+struct Table
+{
+    const Scene& scene;
+    const Visibility& visibility;
+    const FreeSpace& space;
+    std::string savePrefix;
+
+    int line(const char* method, uint32_t count, const std::function<Result<ProbeSet>()>& place) const
+    {
+        const auto started = std::chrono::steady_clock::now();
+        const Result<ProbeSet> set = place();
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+        if (!set) return std::fprintf(stderr, "%s: %s\n", method, set.error().message.c_str()), 1;
+        std::vector<vec3> positions;
+        for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
+        CoverageSettings check;
+        check.seed = 4711; // of no placement
+        const Result<Coverage> coverage = measureCoverage(scene, visibility, space, positions, check);
+        if (!coverage) return std::fprintf(stderr, "%s: %s\n", method, coverage.error().message.c_str()), 1;
+        double quality = 0.0;
+        for (float one : coverage->quality) quality += double(one) / double(coverage->quality.size());
+        std::printf("%-10s %6zu  %7.2f %7.2f  %6.3f %7.3f  %7.4f  %6.1f\n", method, positions.size(), 100.0 * double(coverage->rays),
+                    100.0 * double(coverage->area), double(coverage->medianCosine), double(coverage->medianDistance), quality, seconds);
+        std::fflush(stdout);
+        if (savePrefix.empty()) return 0;
+        const Status saved = saveProbes(*set, savePrefix + "-" + std::to_string(count) + "-" + method + ".json");
+        if (!saved) return std::fprintf(stderr, "%s\n", saved.error().message.c_str()), 1;
+        return 0;
+    }
+
+    ProbeSet setOf(const std::vector<vec3>& positions, const char* why) const
+    {
+        ProbeSet set;
+        for (const vec3& position : positions) set.probes.push_back({position, why});
+        return set;
+    }
+
+    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method) const
+    {
+        PlaceSettings settings;
+        settings.count = count;
+        settings.method = method;
+        PlaceReport report;
+        return placeProbes(scene, settings, report);
+    }
+
+    int run(uint32_t count) const
+    {
+        int failures =
+            line("yardstick", count, [&] { return Result<ProbeSet>(setOf(test::yardstickProbes(visibility, space, count, 7), "greedy")); });
+        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid); });
+        failures += line("skeleton", count,
+                         [&]
+                         {
+                             std::vector<vec3> positions;
+                             for (const Candidate& candidate : skeletonCandidates(visibility, space, count, space.field.voxel))
+                                 positions.push_back(candidate.position);
+                             return Result<ProbeSet>(setOf(positions, "skeleton"));
+                         });
+        return failures + line("ours", count, [&] { return ours(count, PlaceSettings::Method::sdf); });
+    }
+};
+
+int main(int argc, char** argv)
+{
+    std::vector<std::string> words(argv + 1, argv + argc);
+    std::string prefix;
+    if (words.size() >= 2 && words[words.size() - 2] == "--save") prefix = words.back(), words.resize(words.size() - 2);
+    if (words.size() < 2) return std::fprintf(stderr, "usage: sconce_placement_table SCENE COUNT [COUNT...] [--save PREFIX]\n"), 2;
+    Result<Scene> scene = words[0].find('.') == std::string::npos ? makeBuiltinScene(words[0]) : loadGltf(words[0]);
+    if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 3;
+    Result<Visibility> visibility = Visibility::build(*scene);
+    if (!visibility) return std::fprintf(stderr, "%s\n", visibility.error().message.c_str()), 3;
+    Result<FreeSpace> space = findFreeSpace(*scene, *visibility, {});
+    if (!space) return std::fprintf(stderr, "%s\n", space.error().message.c_str()), 3;
+    const Result<Coverage> none = measureCoverage(*scene, *visibility, *space, {}, {});
+    std::printf("%s: %zu triangles, reachable %.1f of %.1f m^3, cells of %.3f m, backs %.2f %%\n", words[0].c_str(),
+                scene->triangles.size(), space->volume,
+                double(visibility->bounds().size().x) * double(visibility->bounds().size().y) * double(visibility->bounds().size().z),
+                double(space->field.voxel), none ? 100.0 * double(none->backs) : 0.0);
+    std::printf("method     probes     rays    area  cosine  metres  quality  seconds\n");
+    const Table table{*scene, *visibility, *space, prefix};
+    int failures = 0;
+    for (size_t word = 1; word < words.size(); ++word) failures += table.run(uint32_t(std::strtoul(words[word].c_str(), nullptr, 10)));
+    return failures ? 1 : 0;
+}
+
+} // namespace
+} // namespace sconce
+
+int main(int argc, char** argv)
+{
+    return sconce::main(argc, argv);
+}
