@@ -5,7 +5,7 @@
 namespace sconce
 {
 
-/// Every approximate knob of a frame, with its default, range and unit; their measured prices are in README.md.
+/// Every approximate knob of the tracer, with its default, range and unit.
 struct Quality
 {
     gpu::TraceQuality trace = {
@@ -16,8 +16,6 @@ struct Quality
         .tolerance = 1.0f,   // scale of the hit rule's thickness, 0.25..4; 1 is derived from the texel's footprint
         .epsilon = 1e-4f,    // absolute slack of the hit rule, share of the scene's diagonal, 0..1e-2
     };
-    int glossyRays = 1;      // rays a pixel and frame for the glossy term, 1..64; time grows in proportion, noise falls with the root
-    bool denoise = true;     // cross-bilateral filter of the glossy term
 };
 
 } // namespace sconce
