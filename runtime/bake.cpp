@@ -121,7 +121,7 @@ Status Bake::directLight(ProbeBaker& baker)
         if (auto status = cancelledIfAsked("probes", i, field.probes.size()); !status) return status;
         ProbeTarget to = target(i);
         to.faces = faces;
-        if (auto status = baker.bakeDirect(field.probes[i].centre, false, to); !status) return status;
+        if (auto status = baker.bakeDirect(field.probes[i].centre, to); !status) return status;
         if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cube.distance.data() + i * cube.info.wordsPerProbe);
     }
     return success();
@@ -154,7 +154,7 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
         if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
-        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), false, target(i));
+        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i));
         if (!status) return status;
     }
     return success();

@@ -20,7 +20,8 @@ struct FieldData
     std::vector<gpu::ProbeHeader> probes;
     std::vector<uint32_t> distance;   // [probe][info.wordsPerProbe]
     std::vector<uint32_t> radiance;   // [probe][face][y][x] (cube) or [probe][y][x] (octahedral), R11G11B10F, finest level only
-    std::vector<uint32_t> irradiance; // [probe][kIrradianceSize^2][2]: R11G11B10F cosine-weighted mean radiance (irradiance / pi), then
+    std::vector<uint32_t> irradiance; // [probe][kIrradianceSize^2][2]: R11G11B10F cosine-weighted mean (irradiance / pi) of what surfaces
+                                      // reflect, without emission and sky, then
                                       // half mean distance | half variance of distance << 16, field units, cosine-power lobe
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it

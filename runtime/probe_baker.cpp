@@ -247,20 +247,9 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     dispatch(cmd, lowPass, {}, push, n / gpu::kLowFactor, 1);
 }
 
-void ProbeBaker::recordIrradiance(VkCommandBuffer cmd, bool whole)
+void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
 {
     Push push = pushFor(vec3(0.0f));
-    push.reflectedOnly = whole ? 0 : 1;
-    recordGather(cmd, false, push);
-}
-
-void ProbeBaker::recordMoments(VkCommandBuffer cmd)
-{
-    recordGather(cmd, true, pushFor(vec3(0.0f)));
-}
-
-void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments, Push push)
-{
     push.level = std::min(info.faceSize, (octahedral ? 32u : 16u) * (moments ? 2u : 1u));
     push.extra = cells.address();
     dispatch(cmd, downsample[moments], {}, push, push.level, octahedral ? 1 : 6);
@@ -273,7 +262,7 @@ void ProbeBaker::copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> piec
     gpu.vk.CmdCopyBuffer(cmd, from.handle(), transfer.handle(), uint32_t(pieces.size()), pieces.data());
 }
 
-Status ProbeBaker::bakeDirect(vec3 centre, bool whole, const ProbeTarget& target)
+Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
 {
     const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), lightBytes = radianceWords * VkDeviceSize(emitters ? 12 : 8);
     const VkDeviceSize faceBytes = octahedral ? VkDeviceSize(6) * info.faceSize * info.faceSize * 4 : 0;
@@ -286,8 +275,8 @@ Status ProbeBaker::bakeDirect(vec3 centre, bool whole, const ProbeTarget& target
         {
             recordFaces(cmd, centre);
             recordMaps(cmd, centre);
-            recordIrradiance(cmd, whole);
-            recordMoments(cmd);
+            recordGather(cmd, false);
+            recordGather(cmd, true);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, wordBytes}}, words);
             copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWords * 4}}, irradiance);
@@ -306,7 +295,7 @@ Status ProbeBaker::bakeDirect(vec3 centre, bool whole, const ProbeTarget& target
     return success();
 }
 
-Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, bool whole, const ProbeTarget& target)
+Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target)
 {
     if (!bouncePass)
     {
@@ -335,7 +324,7 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
             const VkDescriptorSet sets[] = {field.descriptorSet()};
             dispatch(cmd, bouncePass, sets, pushFor(centre), info.faceSize, octahedral ? 1 : 6);
-            recordIrradiance(cmd, whole);
+            recordGather(cmd, false);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWords * 4}}, irradiance);
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,

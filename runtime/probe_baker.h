@@ -28,12 +28,11 @@ public:
     /// @param faceSize  texels a side of the rasterised faces, and of the octahedral map when that is the chart
     static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info);
 
-    /// Faces, direct light, chain or octahedral map, and the irradiance of that light.
-    /// @param whole  the irradiance counts emission and sky, as a finished field's does; else only what surfaces reflect
-    Status bakeDirect(vec3 centre, bool whole, const ProbeTarget& target);
+    /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
+    Status bakeDirect(vec3 centre, const ProbeTarget& target);
     /// Radiance = direct + what the surfaces reflect of the field's irradiance; then the probe's irradiance of that, moments untouched.
     /// @param direct  the probe's radiance after bakeDirect
-    Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, bool whole, const ProbeTarget& target);
+    Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target);
 
 private:
     struct Push // as shaders/bake_probe.glsl
@@ -45,9 +44,8 @@ private:
         vec3 sky;
         float skyDistance;
         VkDeviceAddress emitted;
-        uint32_t reflectedOnly, unused;
     };
-    static_assert(sizeof(Push) == 96);
+    static_assert(sizeof(Push) == 88);
 
     ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo)
         : gpu(device), scene(deviceScene), info(fieldInfo)
@@ -57,9 +55,7 @@ private:
     Status createBuffers();
     void recordFaces(VkCommandBuffer cmd, vec3 centre);
     void recordMaps(VkCommandBuffer cmd, vec3 centre);
-    void recordIrradiance(VkCommandBuffer cmd, bool whole);
-    void recordMoments(VkCommandBuffer cmd);
-    void recordGather(VkCommandBuffer cmd, bool moments, Push push);
+    void recordGather(VkCommandBuffer cmd, bool moments);
     void dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const Push& push, uint32_t width,
                   uint32_t layers);
     void copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from);

@@ -22,8 +22,6 @@ layout(scalar, push_constant) uniform Push
     vec3 sky;
     float skyDistance;
     ProbeWords emitted;
-    uint reflectedOnly;
-    uint unused;
 };
 
 void main()

@@ -43,11 +43,9 @@ void main()
 #else
             uint index = ((chart == kChartCube ? at.z * size : 0u) + y) * size + x;
             vec3 seen = unpackRadiance(radiance.word[index]);
-            if (reflectedOnly != 0u)
-            {
-                if (surface.word[index] == 0u) seen = vec3(0.0);
-                else if (!isNull(emitted)) seen = max(seen - unpackRadiance(emitted.word[index]), vec3(0.0));
-            }
+            // Only what surfaces reflect: emission and sky light surfaces through the list of lights.
+            if (surface.word[index] == 0u) seen = vec3(0.0);
+            else if (!isNull(emitted)) seen = max(seen - unpackRadiance(emitted.word[index]), vec3(0.0));
             sum += weight * seen;
 #endif
             solidAngle += weight;

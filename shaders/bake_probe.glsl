@@ -25,8 +25,6 @@ layout(scalar, push_constant) uniform Push
     vec3 sky;
     float skyDistance;  // that the moments count for sky, field units
     BakeWords emitted;  // emission a radiance texel, R11G11B10F; null: the scene has no emitters
-    uint reflectedOnly; // the gathers leave out emission and sky, which the list of lights has brought already
-    uint unused;
 };
 
 bool isNull(BakeWords words) { return uvec2(words) == uvec2(0u); }
