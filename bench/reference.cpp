@@ -59,6 +59,36 @@ Status check(const ReferenceSettings& s)
     return success();
 }
 
+/// Counts paths and asks the caller's progress function whether to go on, from within a pixel too: a pixel may take minutes.
+class Pace
+{
+public:
+    static constexpr uint32_t kStep = 64; // paths between two questions: milliseconds
+
+    Pace(const Progress& progress, double paths, tbb::task_group_context& context) : progress(progress), paths(paths), context(context) {}
+    bool goOn(uint32_t morePaths)
+    {
+        const uint64_t done = traced.fetch_add(morePaths, std::memory_order_relaxed) + morePaths;
+        // One thread at a time asks; the others need not wait for it.
+        if (const std::unique_lock lock(asking, std::try_to_lock);
+            lock && !stopped.load(std::memory_order_relaxed) && !report(progress, "reference", static_cast<double>(done) / paths))
+        {
+            stopped.store(true, std::memory_order_relaxed);
+            context.cancel_group_execution();
+        }
+        return !stopped.load(std::memory_order_relaxed);
+    }
+    bool cancelled() const { return stopped.load(); }
+
+private:
+    const Progress& progress;
+    const double paths;
+    tbb::task_group_context& context;
+    std::mutex asking;
+    std::atomic<uint64_t> traced{0};
+    std::atomic<bool> stopped{false};
+};
+
 struct Frame
 {
     const ReferenceSettings& settings;
@@ -110,7 +140,8 @@ struct Frame
         store(albedo, pixel, point.surface.baseColor);
     }
 
-    void render(uint32_t x, uint32_t y)
+    /// False: cancelled, the pixel is unfinished.
+    bool render(uint32_t x, uint32_t y, Pace& pace)
     {
         const size_t pixel = size_t(y) * settings.width + x;
         const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
@@ -118,6 +149,7 @@ struct Frame
         glm::dvec3 sums[3]{}, halves[2]{};
         for (uint32_t i = 0; i < settings.samples; ++i)
         {
+            if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
             Random random(settings.seed, pixel, i);
             const vec2 jitter = random.uniform2();
             const vec3 ray = settings.pixelCentre ? centre
@@ -138,10 +170,12 @@ struct Frame
         const vec3 parts[3] = {vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count)};
         for (size_t i = 0; i < 3; ++i) store(direct + i, pixel, parts[i]);
         store(beauty, pixel, parts[0] + parts[1] + parts[2]);
-        if (settings.samples < 2) return;
+        if (!pace.goOn((settings.samples - 1) % Pace::kStep + 1)) return false; // the paths since the last question
+        if (settings.samples < 2) return true;
         const glm::dvec3 a = halves[0] / double((settings.samples + 1) / 2), b = halves[1] / double(settings.samples / 2);
         const glm::dvec3 mean = 0.5 * (a + b), off = 0.5 * (a - b); // E[off^2] is the variance of the mean
         error[pixel] = glm::dot(off * off / (mean * mean + 0.01), glm::dvec3(1.0 / 3.0));
+        return true;
     }
 };
 
@@ -156,31 +190,20 @@ Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& s
     const PathTracer tracer(*rays, settings.roughness, settings.bounces);
     Frame frame(settings, *rays, tracer);
 
-    std::mutex reporting;
-    std::atomic<bool> cancelled{false};
-    size_t done = 0;
     tbb::task_group_context context;
+    Pace pace(progress, static_cast<double>(frame.images.pixelCount()) * settings.samples, context);
     constexpr uint32_t kTile = 16;
     tbb::parallel_for(
         tbb::blocked_range2d<uint32_t>(0, settings.height, kTile, 0, settings.width, kTile),
         [&](const tbb::blocked_range2d<uint32_t>& tile)
         {
             for (uint32_t y = tile.rows().begin(); y != tile.rows().end(); ++y)
-            {
-                if (cancelled.load(std::memory_order_relaxed)) return;
-                for (uint32_t x = tile.cols().begin(); x != tile.cols().end(); ++x) frame.render(x, y);
-            }
-            const std::scoped_lock lock(reporting);
-            done += size_t(tile.rows().size()) * tile.cols().size();
-            if (!cancelled.load() &&
-                !report(progress, "reference", static_cast<double>(done) / static_cast<double>(frame.images.pixelCount())))
-            {
-                cancelled.store(true);
-                context.cancel_group_execution();
-            }
+                for (uint32_t x = tile.cols().begin(); x != tile.cols().end(); ++x)
+                    if (!frame.render(x, y, pace)) return;
         },
         context);
-    if (cancelled.load()) return Error{ErrorCode::cancelled, "the reference picture was cancelled; nothing was kept"};
+    if (pace.cancelled() || !report(progress, "reference", 1.0))
+        return Error{ErrorCode::cancelled, "the reference picture was cancelled; nothing was kept"};
 
     Reference result;
     double sum = 0.0;

@@ -33,7 +33,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEX
     auto& log = *static_cast<MessageLog*>(user);
     std::scoped_lock lock(log.mutex);
     log.messages.emplace_back(data->pMessage);
-    std::fprintf(stderr, "vulkan: %s\n", data->pMessage);
+    std::fprintf(stderr, "validation: %s\n", data->pMessage);
     return VK_FALSE;
 }
 

@@ -54,7 +54,8 @@ public:
 
     const HostVulkan& host() const;
     std::string name() const;
-    /// Every message of the validation layer so far; they are also printed to stderr. Empty when validation is off.
+    /// Every message of the validation layer so far; they are also printed to stderr, each after "validation: ". Empty when validation is
+    /// off.
     std::vector<std::string> validationMessages() const;
     bool validating() const;
 

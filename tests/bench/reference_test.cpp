@@ -1,5 +1,6 @@
 #include "bench/reference.h"
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -229,6 +230,27 @@ TEST(Reference, RoughnessOverrideReachesEverySurface)
     settings.roughness = 0.25f;
     const Reference r = render(smallRoom(), settings);
     for (float roughness : r.images.find("roughness")->pixels) EXPECT_EQ(roughness, 0.25f);
+}
+
+// One pixel can be minutes of work; whoever waits for it must not wait to its end.
+TEST(Reference, CancelsWithinAPixel)
+{
+    ReferenceSettings settings = view({0, 0, 0.9f}, vec3(0.0f), 1, 1048576);
+    settings.bounces = 64;
+    const auto start = std::chrono::steady_clock::now();
+    const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    double last = 0.0;
+    const auto cancelled = renderReference(smallRoom(), settings,
+                                           [&](std::string_view, double done)
+                                           {
+                                               EXPECT_GT(done, last);
+                                               last = done;
+                                               return elapsed() < 0.05;
+                                           });
+    ASSERT_FALSE(cancelled.ok());
+    EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
+    EXPECT_LT(last, 1.0);
+    EXPECT_LT(elapsed(), 2.0);
 }
 
 TEST(Reference, RefusesBadSettingsAndCancels)

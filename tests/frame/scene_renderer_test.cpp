@@ -36,8 +36,7 @@ protected:
         return settings;
     }
 
-    static Result<RenderedFrame> draw(const Scene& scene, std::span<const vec3> probes, const RenderSettings& settings,
-                                      uint32_t resolution = 128)
+    Result<RenderedFrame> draw(const Scene& scene, std::span<const vec3> probes, const RenderSettings& settings, uint32_t resolution = 128)
     {
         BakeSettings bake;
         bake.resolution = resolution;

@@ -6,12 +6,14 @@
 
 #include "runtime/bake.h"
 #include "runtime/tracer_cpu.h"
-#include "tests/runtime/validated_device.h"
+#include "tests/support/device.h"
 
 namespace sconce
 {
 namespace
 {
+
+using testing_support::ValidatedDevice;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 const FieldData kNoField;

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "runtime/gpu.h"
-#include "tests/runtime/validated_device.h"
+#include "tests/support/device.h"
 
 namespace sconce
 {
 namespace
 {
+
+using testing_support::ValidatedDevice;
 
 TEST(Gpu, UploadedBytesComeBackAcrossStagingPieces)
 {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -9,36 +10,47 @@
 namespace sconce::testing_support
 {
 
-/// One validated device for all tests of a program; a test that ends with more messages than it began with fails.
-class DeviceTest : public testing::Test
+/// A device under the validation layer (core and synchronization) that fails its test when the layer has anything to say.
+class ValidatedDevice
 {
-protected:
-    void SetUp() override
+public:
+    explicit ValidatedDevice(uint64_t memoryBudget = 0)
     {
-        ASSERT_TRUE(device().ok()) << device().error().message;
-        before = device()->validationMessages().size();
+        OwnDevice::Desc desc;
+        desc.validation = true;
+        desc.memoryBudget = memoryBudget;
+        auto made = OwnDevice::create(desc);
+        if (!made) throw std::runtime_error(made.error().message);
+        own = std::make_unique<OwnDevice>(std::move(*made));
     }
-    void TearDown() override
+    ~ValidatedDevice()
     {
-        if (device().ok()) EXPECT_EQ(device()->validationMessages().size(), before) << "the validation layer has something to say";
+        lent.reset();
+        for (const std::string& message : own->validationMessages()) ADD_FAILURE() << message;
     }
-    static Gpu& gpu()
+    const HostVulkan& host() const { return own->host(); }
+    Gpu& gpu()
     {
-        static std::unique_ptr<Gpu> made = []
-        {
-            auto result = Gpu::create(device()->host());
-            return result ? std::move(*result) : nullptr;
-        }();
-        return *made;
+        if (lent) return *lent;
+        auto made = Gpu::create(host());
+        if (!made) throw std::runtime_error(made.error().message);
+        lent = std::move(*made);
+        return *lent;
     }
 
 private:
-    static Result<OwnDevice>& device()
-    {
-        static Result<OwnDevice> made = OwnDevice::create({.device = "", .validation = true, .memoryBudget = 0});
-        return made;
-    }
-    size_t before = 0;
+    std::unique_ptr<OwnDevice> own;
+    std::unique_ptr<Gpu> lent;
+};
+
+/// The fixture of tests that share nothing but the way to a device.
+class DeviceTest : public testing::Test
+{
+protected:
+    Gpu& gpu() { return validated.gpu(); }
+
+private:
+    ValidatedDevice validated;
 };
 
 } // namespace sconce::testing_support

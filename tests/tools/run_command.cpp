@@ -5,7 +5,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -13,6 +16,19 @@
 
 namespace sconce::testing_support
 {
+
+namespace
+{
+
+/// A message of the validation layer (OwnDevice prints them with this prefix) fails the test whose command caused it.
+void expectValid(const std::vector<std::string>& arguments, const std::string& err)
+{
+    std::istringstream lines(err);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("validation: ")) ADD_FAILURE() << "sconce " << testing::PrintToString(arguments) << "\n" << line;
+}
+
+} // namespace
 
 CommandResult sconceCommand(const std::vector<std::string>& arguments, double limitSeconds, double interruptAfter)
 {
@@ -22,6 +38,7 @@ CommandResult sconceCommand(const std::vector<std::string>& arguments, double li
     std::vector<char*> argv{const_cast<char*>(SCONCE_COMMAND)};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
+    [[maybe_unused]] static const int validated = setenv("SCONCE_VALIDATION", "1", 1);
     const pid_t child = fork();
     if (child == 0)
     {
@@ -55,6 +72,7 @@ CommandResult sconceCommand(const std::vector<std::string>& arguments, double li
     if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
     result.out = readText(outFile);
     result.err = readText(errFile);
+    expectValid(arguments, result.err);
     return result;
 }
 

@@ -15,7 +15,8 @@ struct CommandResult
     std::string out, err;
 };
 
-/// Runs the `sconce` command of this build. @param interruptAfter seconds until it gets SIGINT; 0: never
+/// Runs the `sconce` command of this build under the Vulkan validation layer, whose messages fail the test. @param interruptAfter seconds
+/// until it gets SIGINT; 0: never
 CommandResult sconceCommand(const std::vector<std::string>& arguments, double limitSeconds = 60.0, double interruptAfter = 0.0);
 
 /// A folder of the test's own, empty at first, removed at the end.
