@@ -65,7 +65,7 @@ class Pace
 public:
     static constexpr uint32_t kStep = 64; // paths between two questions: milliseconds
 
-    Pace(const Progress& progress, double paths, tbb::task_group_context& context) : progress(progress), paths(paths), context(context) {}
+    Pace(const Progress& asked, double allPaths, tbb::task_group_context& group) : progress(asked), paths(allPaths), context(group) {}
     bool goOn(uint32_t morePaths)
     {
         const uint64_t done = traced.fetch_add(morePaths, std::memory_order_relaxed) + morePaths;
