@@ -23,7 +23,7 @@ vec3 someLights(Pixel p, vec3 point, vec3 geometric, uint first, uint count, uin
 {
     uint taken = min(samples, count);
     if (taken == 0u) return vec3(0.0);
-    float start = randomPair(uvec2(at), stream, frame.seed).x;
+    float start = randomPair(uvec2(at), 0u, stream, frame.seed).x;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < taken; ++i)
     {
@@ -44,8 +44,8 @@ void main()
     {
         vec3 point = (p.position - origin) / scale;
         vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
-        vec3 irradiance = someLights(p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 501u, at) +
-                          someLights(p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 502u, at);
+        vec3 irradiance = someLights(p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
+                          someLights(p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
         light += irradiance / SCONCE_BRDF_PI;
     }
     imageStore(total, at, vec4(light, 1.0));

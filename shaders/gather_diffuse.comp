@@ -22,7 +22,7 @@ void main()
         TangentFrame tangents = tangentFrame(p.normal);
         for (uint i = 0u; i < kLookUps; ++i)
         {
-            vec2 along = (randomPair(uvec2(at), i + 1000u, frame.seed) - 0.5) * 2.0 * field.voxel;
+            vec2 along = (randomPair(uvec2(at), i, 1u, frame.seed) - 0.5) * 2.0 * field.voxel;
             int reads = 0;
             vec3 lookUp = point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal;
             sum += irradianceAt(point, p.normal, lookUp, reads);

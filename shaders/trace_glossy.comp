@@ -25,7 +25,7 @@ void main()
         uint rays = mirror ? 1u : frame.glossyRays;
         for (uint i = 0u; i < rays; ++i)
         {
-            vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), ggxAlpha(p.brdf.roughness), randomPair(uvec2(at), i, frame.seed));
+            vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), ggxAlpha(p.brdf.roughness), randomPair(uvec2(at), i, 0u, frame.seed));
             vec3 direction = reflect(-view, halfway);
             if (direction.z <= 0.0) continue; // below the surface: no light
             vec3 fresnel = fresnelSchlick(reflectanceAtNormal(p.brdf), dot(view, halfway));
