@@ -4,12 +4,14 @@
 #include "runtime/lights.h"
 #include "runtime/scene_mesh.h"
 #include "scene/builtin_scenes.h"
-#include "tests/runtime/validated_device.h"
+#include "tests/support/device.h"
 
 namespace sconce
 {
 namespace
 {
+
+using testing_support::ValidatedDevice;
 
 uint32_t indexCount(const std::vector<SceneDraws::Run>& runs)
 {
