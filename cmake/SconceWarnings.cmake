@@ -7,4 +7,6 @@ target_compile_options(sconce_warnings INTERFACE
 if(SCONCE_SANITIZE)
     target_compile_options(sconce_warnings INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
     add_link_options(-fsanitize=address,undefined)
+    set(SCONCE_KEEP_MODULES ${PROJECT_SOURCE_DIR}/tests/sanitizers/keep_modules.cpp)
+    target_sources(sconce_warnings INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${SCONCE_KEEP_MODULES}>)
 endif()

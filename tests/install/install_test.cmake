@@ -14,6 +14,6 @@ step("Installation" ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --pre
 step("Bake" ${WORK}/prefix/bin/sconce bake cornell --probes ${HOST}/probes.json -o ${WORK}/cornell.sconce --resolution 128 --bounces 1)
 step("Configuration of the host" ${CMAKE_COMMAND} -S ${HOST} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG}
      -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
-     -DCMAKE_CXX_FLAGS=${FLAGS})
+     -DCMAKE_CXX_FLAGS=${FLAGS} -DKEEP_MODULES=${KEEP_MODULES})
 step("Build of the host" ${CMAKE_COMMAND} --build ${WORK}/build --config ${CONFIG})
 step("Run of the host" ${WORK}/build/host ${WORK}/cornell.sconce)
