@@ -112,7 +112,10 @@ TEST(LightList, SceneWithoutLightHasNoEntries)
 TEST(LightList, ManyShadowMapsShrinkUntilTheyFit)
 {
     Scene scene = cornell();
-    scene.lights.assign(100, Light{.type = LightType::point, .intensity = vec3(1.0f)});
+    Light lamp;
+    lamp.type = LightType::point;
+    lamp.intensity = vec3(1.0f);
+    scene.lights.assign(100, lamp);
     const LightList list = buildLightList(scene, fieldSpace(scene.bounds()), {});
     EXPECT_LT(list.settings.pointShadow, 512u);
     EXPECT_LE(uint64_t(list.pointLayers) * list.settings.pointShadow * list.settings.pointShadow * 4, kShadowBytes);
