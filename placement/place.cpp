@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "placement/optimise.h"
 #include "placement/random.h"
 #include "placement/select.h"
 #include "placement/skeleton.h"
@@ -21,6 +23,7 @@ constexpr double kRidgeShare = 0.43;
 constexpr double kSpreadShare = 0.32;
 constexpr double kGapShare = 0.25;
 constexpr double kRayShare = 0.8; // of the surfels where rays hit; the rest evenly by area
+constexpr float kComfort = 0.09f; // of the probes' spacing, metres from surfaces
 constexpr size_t kTableBytes = size_t(400) << 20;
 constexpr uint32_t kGuessedCount = 64; // for the spacing while the count is open
 
@@ -38,6 +41,9 @@ std::string faultOf(const PlaceSettings& settings)
         return fmt::format("candidates is {}; give 100 to 100000.", settings.candidates);
     if (settings.surfels < 1000 || settings.surfels > 1'000'000)
         return fmt::format("surfels is {}; give 1000 to 1000000.", settings.surfels);
+    if (settings.refineRounds > 1000) return fmt::format("refineRounds is {}; give 0 to 1000.", settings.refineRounds);
+    if (settings.refineSurfels < 1000 || settings.refineSurfels > 1'000'000)
+        return fmt::format("refineSurfels is {}; give 1000 to 1000000.", settings.refineSurfels);
     for (const vec3& point : settings.inside)
         if (!std::isfinite(point.x + point.y + point.z))
             return fmt::format("the inside point ({}, {}, {}) is not finite.", point.x, point.y, point.z);
@@ -123,16 +129,51 @@ std::vector<vec3> positionsOf(const std::vector<Candidate>& candidates, std::spa
     return positions;
 }
 
+/// What rays hit, and some evenly by area.
+std::vector<Surfel> mixedSurfels(const Scene& scene, const Visibility& visibility, const FreeSpace& space, size_t count, uint64_t seed)
+{
+    std::vector<Surfel> surfels = raySurfels(visibility, space, size_t(double(count) * kRayShare), seed);
+    for (const Surfel& surfel : areaSurfels(scene, visibility, space, size_t(double(count) * (1.0 - kRayShare)), seed))
+        surfels.push_back(surfel);
+    return surfels;
+}
+
+/// The probes with what each is good for, those that see most of what the earlier ones don't first.
+Result<ProbeSet> explained(const Visibility& visibility, const ViewTargets& targets, const std::vector<Candidate>& probes,
+                           PlaceReport& report)
+{
+    ViewTable table;
+    if (const Status done = extendTable(table, visibility, targets, probes, {}); !done) return done.error();
+    std::vector<uint32_t> order(probes.size());
+    std::iota(order.begin(), order.end(), 0u);
+    report.newlyCovered = orderByGain(table, order);
+    report.alone = sharesAlone(table, order);
+    ProbeSet set;
+    for (size_t k = 0; k < order.size(); ++k)
+    {
+        const Candidate& probe = probes[order[k]];
+        const double fresh = 100.0 * double(report.newlyCovered[k]), alone = 100.0 * double(report.alone[k]);
+        std::string why = nameOf(probe.origin);
+        why += fresh > 0.0 ? fmt::format(", covers {:.2f} % of the surface first", fresh) : ", sees better what others see badly";
+        if (alone > 0.0) why += fmt::format(", {:.2f} % alone", alone);
+        set.probes.push_back({probe.position, why});
+    }
+    return set;
+}
+
 Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibility, const FreeSpace& space, const PlaceSettings& settings,
                                  PlaceReport& report, const Progress& progress)
 {
     const float clearance = settings.clearance > 0.0f ? settings.clearance : space.field.voxel;
     report.clearance = clearance;
+    // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
+    const float comfort = std::max(clearance, kComfort * probeSpacing(space, settings.count ? settings.count : kGuessedCount));
+    report.comfort = comfort;
     if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
     const double planned = std::max(double(settings.candidates), 3.5 * double(settings.count)); // many probes need many candidates
-    std::vector<Candidate> candidates = skeletonCandidates(visibility, space, size_t(planned * kRidgeShare), clearance);
+    std::vector<Candidate> candidates = skeletonCandidates(visibility, space, size_t(planned * kRidgeShare), comfort);
     for (const Candidate& candidate :
-         spreadCandidates(visibility, space, size_t(planned * kSpreadShare), clearance, settings.seed ^ 0x737072656164ull))
+         spreadCandidates(visibility, space, size_t(planned * kSpreadShare), comfort, settings.seed ^ 0x737072656164ull))
         candidates.push_back(candidate);
     if (candidates.empty())
         return Error{ErrorCode::badInput,
@@ -141,32 +182,30 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                  scene.name, clearance, space.field.voxel)};
 
     const double samples = std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0));
-    std::vector<Surfel> surfels = raySurfels(visibility, space, size_t(samples * kRayShare), settings.seed);
-    for (const Surfel& surfel : areaSurfels(scene, visibility, space, size_t(samples * (1.0 - kRayShare)), settings.seed))
-        surfels.push_back(surfel);
+    std::vector<Surfel> surfels = mixedSurfels(scene, visibility, space, size_t(samples), settings.seed);
     if (surfels.empty())
         return Error{ErrorCode::badInput,
                      fmt::format("No ray from the free space of scene '{}' hits a surface; check --inside.", scene.name)};
 
-    const float spacing = probeSpacing(space, settings.count ? settings.count : kGuessedCount);
+    const ViewTargets targets(visibility, std::move(surfels), probeSpacing(space, settings.count ? settings.count : kGuessedCount));
     ViewTable table;
-    if (const Status done = extendTable(table, visibility, surfels, candidates, spacing, progress); !done) return done.error();
+    if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
     std::vector<uint32_t> chosen = chooseGreedily(table, settings.count, settings.coverage);
     const std::vector<uint8_t> best = bestValues(table, chosen);
     std::vector<Surfel> gaps;
-    for (size_t s = 0; s < surfels.size(); ++s)
-        if (best[s] == 0) gaps.push_back(surfels[s]);
+    for (size_t s = 0; s < targets.size(); ++s)
+        if (best[s] == 0) gaps.push_back(targets.surfels[s]);
     for (const Candidate& candidate :
          gapCandidates(visibility, space, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
         candidates.push_back(candidate);
-    if (const Status done = extendTable(table, visibility, surfels, candidates, spacing, progress); !done) return done.error();
+    if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
 
     std::vector<uint32_t> all(candidates.size());
     for (uint32_t c = 0; c < all.size(); ++c) all[c] = c;
     const std::vector<uint8_t> bestOfAll = bestValues(table, all);
     report.candidates = candidates.size();
     report.bestPossible =
-        float(double(surfels.size() - size_t(std::count(bestOfAll.begin(), bestOfAll.end(), uint8_t(0)))) / double(surfels.size()));
+        float(double(targets.size() - size_t(std::count(bestOfAll.begin(), bestOfAll.end(), uint8_t(0)))) / double(targets.size()));
     if (settings.count > candidates.size())
         return Error{ErrorCode::badArgument,
                      fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
@@ -178,6 +217,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
         chosen = chooseGreedily(table, settings.count, target);
         // A pass costs candidates x surfels x probes bytes; beyond this many probes the greedy choice stands.
         if (settings.count && chosen.size() <= 600) improveByExchange(table, chosen, 2);
+        if (!settings.count) pruneNeedless(table, chosen);
     };
     if (!sconce::report(progress, "choice", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
     choose(settings.coverage);
@@ -200,18 +240,22 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                                           settings.coverage, chosen.size(), kMostProbes)};
     }
 
-    report.newlyCovered = orderByGain(table, chosen);
-    ProbeSet set;
-    for (size_t k = 0; k < chosen.size(); ++k)
-    {
-        const Candidate& candidate = candidates[chosen[k]];
-        const float fresh = 100.0f * report.newlyCovered[k];
-        set.probes.push_back(
-            {candidate.position, fresh > 0.0f
-                                     ? fmt::format("{}, covers {:.2f} % of the surface first", nameOf(candidate.origin), double(fresh))
-                                     : fmt::format("{}, sees better what others see badly", nameOf(candidate.origin))});
-    }
-    return set;
+    // Fresh samples: those of the choice have been fitted to already.
+    const ViewTargets refining(visibility,
+                               mixedSurfels(scene, visibility, space, settings.refineSurfels, settings.seed ^ 0x726566696e65ull),
+                               probeSpacing(space, chosen.size()));
+    std::vector<vec3> positions = positionsOf(candidates, chosen);
+    OptimiseSettings optimise;
+    optimise.refine = settings.refine;
+    optimise.rounds = settings.refineRounds;
+    optimise.clearance = clearance;
+    optimise.comfort = comfort;
+    optimise.seed = settings.seed;
+    if (const Status done = optimisePositions(visibility, space, refining, positions, optimise, progress); !done) return done.error();
+
+    std::vector<Candidate> final;
+    for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], candidates[chosen[k]].origin});
+    return explained(visibility, refining, final, report);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 
 #include "placement/coverage.h"
 #include "placement/free_space.h"
+#include "placement/optimise.h"
 #include "placement/picture.h"
 #include "placement/probe_set.h"
 #include "scene/progress.h"
@@ -31,10 +32,13 @@ struct PlaceSettings
     std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
     uint64_t seed = 1;        // of every random choice; same scene, settings and seed: same bytes
     float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
-    uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
-    uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
-    bool explain = false;             // fills PlaceReport::picture
-    uint32_t surfels = 40000;         // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
+    uint32_t voxels = kDefaultVoxels;   // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
+    uint32_t candidates = 2800;         // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
+    Refine refine = Refine::stochastic; // sdf: how positions are moved after the choice
+    uint32_t refineRounds = 6;          // times through all probes, 0..1,000; each costs 9 views a probe
+    uint32_t refineSurfels = 16000;     // surface samples to refine by, 1,000..1,000,000
+    bool explain = false;               // fills PlaceReport::picture
+    uint32_t surfels = 16000;           // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
 };
 
 struct PlaceReport
@@ -43,6 +47,7 @@ struct PlaceReport
     double reachableVolume = 0.0; // cubic metres
     float voxel = 0.0f;           // side of a cell of the distance field, metres
     float clearance = 0.0f;       // that was kept, metres; 0 for a grid
+    float comfort = 0.0f;         // that most keep, metres
     float coverageRays = 0.0f;    // measured on samples that the choice did not use
     float coverageArea = 0.0f;
     float medianCosine = 0.0f;       // of what is seen, in the best probe
@@ -50,6 +55,7 @@ struct PlaceReport
     float bestPossible = 0.0f;       // sdf: share of the surface points that any candidate at all sees
     size_t candidates = 0;           // positions that were tested
     std::vector<float> newlyCovered; // [probes] sdf: share of the surface points that this probe sees and no earlier one
+    std::vector<float> alone;        // [probes] sdf: share that no other probe sees
     uint32_t gridOutside = 0;        // grid: points outside the reachable space
     double seconds = 0.0;
     Picture picture;                   // when settings.explain: drawPlacement

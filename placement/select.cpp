@@ -11,20 +11,6 @@ namespace sconce
 namespace
 {
 
-/// How much the sum of best values grows with one more row.
-uint64_t gainOf(std::span<const uint8_t> row, const uint8_t* best)
-{
-    uint64_t sum = 0;
-    for (size_t first = 0; first < row.size(); first += 4096) // blocks whose sum fits 32 bits: the inner loop vectorises
-    {
-        const size_t end = std::min(row.size(), first + 4096);
-        uint32_t part = 0;
-        for (size_t s = first; s < end; ++s) part += uint32_t(std::max(row[s], best[s]) - best[s]);
-        sum += part;
-    }
-    return sum;
-}
-
 void raise(std::vector<uint8_t>& best, std::span<const uint8_t> row)
 {
     for (size_t s = 0; s < row.size(); ++s) best[s] = std::max(best[s], row[s]);
@@ -47,12 +33,64 @@ struct Bound
 
 } // namespace
 
-Status extendTable(ViewTable& table, const Visibility& visibility, std::span<const Surfel> surfels, std::span<const Candidate> candidates,
-                   float spacing, const Progress& progress)
+uint64_t gainOf(std::span<const uint8_t> row, const uint8_t* best)
 {
-    table.surfels = surfels.size();
+    uint64_t sum = 0;
+    for (size_t first = 0; first < row.size(); first += 4096) // blocks whose sum fits 32 bits: the inner loop vectorises
+    {
+        const size_t end = std::min(row.size(), first + 4096);
+        uint32_t part = 0;
+        for (size_t s = first; s < end; ++s) part += uint32_t(std::max(row[s], best[s]) - best[s]);
+        sum += part;
+    }
+    return sum;
+}
+
+ViewTargets::ViewTargets(const Visibility& visibility, std::vector<Surfel> samples, float metres)
+    : surfels(std::move(samples)), spacing(metres)
+{
+    Bounds bounds;
+    for (const Surfel& surfel : surfels) bounds.add(surfel.position);
+    const vec3 perCell = 1023.0f / glm::max(bounds.size(), vec3(1e-30f));
+    const auto spread = [](uint32_t bits) // to every third bit
+    {
+        uint32_t out = 0;
+        for (uint32_t bit = 0; bit < 10; ++bit) out |= (bits >> bit & 1u) << (3 * bit);
+        return out;
+    };
+    std::vector<std::pair<uint32_t, uint32_t>> order(surfels.size());
+    for (uint32_t s = 0; s < order.size(); ++s)
+    {
+        const uvec3 cell((surfels[s].position - bounds.low) * perCell);
+        order[s] = {spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, s};
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<Surfel> sorted;
+    for (const auto& [code, s] : order) sorted.push_back(surfels[s]);
+    surfels = std::move(sorted);
+    for (const Surfel& surfel : surfels) lifted.push_back(surfel.position + visibility.epsilon() * surfel.normal);
+}
+
+void ViewTargets::rate(const Visibility& visibility, vec3 probe, std::span<uint8_t> values) const
+{
+    for (size_t s = 0; s < surfels.size(); ++s)
+    {
+        const float quality = viewQuality(surfels[s], probe, spacing);
+        values[s] = quality > 0.0f ? uint8_t(float(kSeen) + std::round(float(kBetter) * quality)) : uint8_t(0);
+    }
+    thread_local std::vector<uint8_t> seen;
+    seen.assign(values.begin(), values.end());
+    visibility.unoccluded(probe, lifted, seen);
+    for (size_t s = 0; s < surfels.size(); ++s)
+        if (!seen[s]) values[s] = 0;
+}
+
+Status extendTable(ViewTable& table, const Visibility& visibility, const ViewTargets& targets, std::span<const Candidate> candidates,
+                   const Progress& progress)
+{
+    table.surfels = targets.size();
     const size_t held = table.candidates();
-    table.values.resize(candidates.size() * surfels.size());
+    table.values.resize(candidates.size() * targets.size());
     constexpr size_t kChunk = 128; // candidates between two reports
     for (size_t first = held; first < candidates.size(); first += kChunk)
     {
@@ -61,15 +99,8 @@ Status extendTable(ViewTable& table, const Visibility& visibility, std::span<con
         tbb::parallel_for(first, std::min(first + kChunk, candidates.size()),
                           [&](size_t candidate)
                           {
-                              uint8_t* row = table.values.data() + candidate * surfels.size();
-                              const vec3 probe = candidates[candidate].position;
-                              for (size_t s = 0; s < surfels.size(); ++s)
-                              {
-                                  const float quality = viewQuality(surfels[s], probe, spacing);
-                                  const bool seen = quality > 0.0f && visibility.sees(probe, surfels[s].position, surfels[s].normal);
-                                  row[s] = seen ? uint8_t(float(ViewTable::kSeen) + std::round(float(ViewTable::kBetter) * quality))
-                                                : uint8_t(0);
-                              }
+                              uint8_t* row = table.values.data() + candidate * targets.size();
+                              targets.rate(visibility, candidates[candidate].position, {row, targets.size()});
                           });
     }
     return success();
@@ -143,6 +174,34 @@ void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, in
     }
 }
 
+void pruneNeedless(const ViewTable& table, std::vector<uint32_t>& chosen)
+{
+    std::vector<uint32_t> seenBy(table.surfels, 0);
+    std::vector<std::pair<size_t, size_t>> bySight; // surfels seen, slot
+    for (size_t k = 0; k < chosen.size(); ++k)
+    {
+        size_t seen = 0;
+        const auto row = table.row(chosen[k]);
+        for (size_t s = 0; s < row.size(); ++s) seenBy[s] += row[s] != 0, seen += row[s] != 0;
+        bySight.emplace_back(seen, k);
+    }
+    std::sort(bySight.begin(), bySight.end());
+    std::vector<uint8_t> needless(chosen.size(), 0);
+    for (const auto& [seen, k] : bySight)
+    {
+        const auto row = table.row(chosen[k]);
+        bool alone = false;
+        for (size_t s = 0; s < row.size() && !alone; ++s) alone = row[s] != 0 && seenBy[s] == 1;
+        if (alone) continue;
+        needless[k] = 1;
+        for (size_t s = 0; s < row.size(); ++s) seenBy[s] -= row[s] != 0;
+    }
+    size_t kept = 0;
+    for (size_t k = 0; k < chosen.size(); ++k)
+        if (!needless[k]) chosen[kept++] = chosen[k];
+    chosen.resize(kept);
+}
+
 std::vector<float> orderByGain(const ViewTable& table, std::vector<uint32_t>& chosen)
 {
     std::vector<uint8_t> best(table.surfels, 0);
@@ -163,6 +222,21 @@ std::vector<float> orderByGain(const ViewTable& table, std::vector<uint32_t>& ch
             shares.resize(chosen.size(), 0.0f);
             break;
         }
+    }
+    return shares;
+}
+
+std::vector<float> sharesAlone(const ViewTable& table, std::span<const uint32_t> chosen)
+{
+    std::vector<uint32_t> seenBy(table.surfels, 0);
+    for (uint32_t candidate : chosen)
+        for (size_t s = 0; s < table.surfels; ++s) seenBy[s] += table.row(candidate)[s] != 0;
+    std::vector<float> shares;
+    for (uint32_t candidate : chosen)
+    {
+        size_t alone = 0;
+        for (size_t s = 0; s < table.surfels; ++s) alone += table.row(candidate)[s] != 0 && seenBy[s] == 1;
+        shares.push_back(table.surfels ? float(alone) / float(table.surfels) : 0.0f);
     }
     return shares;
 }

@@ -195,6 +195,33 @@ bool Visibility::unoccluded(vec3 from, vec3 to) const
     return ray.tfar >= 0.0f; // Embree writes -infinity when occluded
 }
 
+void Visibility::unoccluded(vec3 from, std::span<const vec3> to, std::span<uint8_t> seen) const
+{
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRay8 rays{};
+    alignas(32) int valid[8];
+    size_t target[8];
+    for (size_t next = 0; next < to.size();)
+    {
+        int lanes = 0;
+        for (; next < to.size() && lanes < 8; ++next)
+        {
+            if (!seen[next]) continue;
+            const vec3 direction = to[next] - from;
+            rays.org_x[lanes] = from.x, rays.org_y[lanes] = from.y, rays.org_z[lanes] = from.z;
+            rays.dir_x[lanes] = direction.x, rays.dir_y[lanes] = direction.y, rays.dir_z[lanes] = direction.z;
+            rays.tnear[lanes] = 0.0f, rays.tfar[lanes] = 1.0f, rays.mask[lanes] = ~0u;
+            target[lanes++] = next;
+        }
+        if (lanes == 0) break;
+        for (int lane = 0; lane < 8; ++lane) valid[lane] = lane < lanes ? -1 : 0;
+        rtcOccluded8(valid, state->embree, &context, &rays);
+        for (int lane = 0; lane < lanes; ++lane) seen[target[lane]] = rays.tfar[lane] >= 0.0f;
+    }
+}
+
 bool Visibility::sees(vec3 probe, vec3 surface, vec3 normal) const
 {
     return unoccluded(probe, surface + state->epsilon * normal);

@@ -37,6 +37,36 @@ TEST(FreeSpace, ClosedRoomIsFreeUpToItsWalls)
     EXPECT_NEAR(space.volume, 24.0, 24.0 * 0.12);
 }
 
+// Two rooms like those of a game map: single-sided walls, one of them with a hole to the void between the rooms. The void is joined to the
+// rooms, and blocks of cells straddle the walls.
+TEST(FreeSpace, TheVoidBetweenRoomsIsNotPartOfThem)
+{
+    Scene scene = emptyScene();
+    addRoom(scene, {0, 0, 0}, {4, 3, 4});
+    addRoom(scene, {5, 0, 0}, {9, 3, 4});
+    // A hole of 1 m in the wall x = 4: the wall's two triangles give way to four strips around it.
+    std::erase_if(scene.triangles,
+                  [&](const uvec3& corners)
+                  {
+                      for (int corner = 0; corner < 3; ++corner)
+                          if (scene.positions[corners[corner]].x != 4.0f) return false;
+                      return true;
+                  });
+    scene.triangleMaterial.resize(scene.triangles.size());
+    for (const auto& [low, high] : {std::pair{vec3(4, 0, 0), vec3(4, 3, 1)},
+                                    {vec3(4, 0, 2), vec3(4, 3, 4)},
+                                    {vec3(4, 2, 1), vec3(4, 3, 2)},
+                                    {vec3(4, 0, 1), vec3(4, 1, 2)}})
+        addQuad(scene, low, {0, 0, high.z - low.z}, {0, high.y - low.y, 0});
+    const auto visibility = Visibility::build(scene);
+    ASSERT_TRUE(visibility);
+    const FreeSpace space = spaceOf(scene, {{2, 1.5f, 2}});
+    size_t outside = 0;
+    for (uint32_t at : space.cells) outside += space.field.centre(space.field.cell(at)).x > 4.0f + 2.0f * space.field.voxel;
+    EXPECT_LT(double(outside), 0.01 * double(space.cells.size()));
+    EXPECT_GT(space.volume, 0.8 * 48.0);
+}
+
 TEST(FreeSpace, ThinWallSeparatesAndAPointInsideChooses)
 {
     const Scene scene = dividedRoom();

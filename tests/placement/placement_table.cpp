@@ -56,11 +56,15 @@ struct Table
         return set;
     }
 
-    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method) const
+    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method, Refine refine) const
     {
         PlaceSettings settings;
         settings.count = count;
         settings.method = method;
+        settings.refine = refine;
+        if (const char* text = std::getenv("P2_SURFELS")) settings.surfels = uint32_t(std::atoi(text));
+        if (const char* text = std::getenv("P2_ROUNDS")) settings.refineRounds = uint32_t(std::atoi(text));
+        if (const char* text = std::getenv("P2_RS")) settings.refineSurfels = uint32_t(std::atoi(text));
         PlaceReport report;
         return placeProbes(scene, settings, report);
     }
@@ -69,7 +73,7 @@ struct Table
     {
         int failures =
             line("yardstick", count, [&] { return Result<ProbeSet>(setOf(test::yardstickProbes(visibility, space, count, 7), "greedy")); });
-        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid); });
+        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid, Refine::none); });
         failures += line("skeleton", count,
                          [&]
                          {
@@ -78,7 +82,11 @@ struct Table
                                  positions.push_back(candidate.position);
                              return Result<ProbeSet>(setOf(positions, "skeleton"));
                          });
-        return failures + line("ours", count, [&] { return ours(count, PlaceSettings::Method::sdf); });
+        const std::pair<const char*, Refine> refinements[] = {
+            {"chosen", Refine::none}, {"gradient", Refine::gradient}, {"gibbs", Refine::gibbs}, {"stochastic", Refine::stochastic}};
+        for (const auto& [name, refine] : refinements)
+            failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine); });
+        return failures;
     }
 };
 

@@ -54,6 +54,24 @@ TEST(ImproveByExchange, LeavesTheGreedyTrap)
     EXPECT_EQ(chosen, (std::vector<uint32_t>{1, 2}));
 }
 
+TEST(PruneNeedless, DropsWhatTheOthersSeeAnyway)
+{
+    std::vector<uint32_t> chosen{0, 1, 2};
+    pruneNeedless(tableOf(kTrap), chosen);
+    EXPECT_EQ(chosen.size(), 2u); // 1 and 2 see all, 0 is the widest but needless only when the smaller ones stay
+    std::vector<uint32_t> needed{1, 2};
+    pruneNeedless(tableOf(kTrap), needed);
+    EXPECT_EQ(needed, (std::vector<uint32_t>{1, 2}));
+}
+
+TEST(SharesAlone, CountsOnlyWhatNoOtherSees)
+{
+    const std::vector<uint32_t> chosen{0, 1};
+    const std::vector<float> alone = sharesAlone(tableOf(kTrap), chosen);
+    EXPECT_FLOAT_EQ(alone[0], 2.0f / 6.0f);
+    EXPECT_FLOAT_EQ(alone[1], 1.0f / 6.0f);
+}
+
 TEST(OrderByGain, SharesAddUpToTheCoverage)
 {
     std::vector<uint32_t> chosen{1, 2, 0};

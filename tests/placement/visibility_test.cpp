@@ -96,6 +96,20 @@ TEST(Visibility, NoTrianglesIsRefusedWithASentence)
     EXPECT_NE(visibility.error().message.find("0 triangles"), std::string::npos) << visibility.error().message;
 }
 
+TEST(Visibility, RaysTracedTogetherAnswerLikeEveryTriangleLookedAt)
+{
+    const Scene scene = furnishedRoom();
+    const auto visibility = Visibility::build(scene);
+    const vec3 from(0.6f, 1.1f, 0.7f);
+    std::vector<vec3> to;
+    for (int i = 0; i < 203; ++i)
+        to.emplace_back(0.1f + 0.0287f * float(i), 0.1f + 0.0137f * float(i * 7 % 203), 0.05f + 0.0193f * float(i * 31 % 203));
+    std::vector<uint8_t> seen(to.size(), 1);
+    seen[5] = seen[100] = 0; // not asked: stays 0
+    visibility->unoccluded(from, to, seen);
+    for (size_t i = 0; i < to.size(); ++i) EXPECT_EQ(seen[i] != 0, i != 5 && i != 100 && !bruteBlocked(scene, from, to[i])) << i;
+}
+
 TEST(ClosestPointOnTriangle, DegenerateTriangleIsItsLongestEdge)
 {
     const vec3 nearest = closestPointOnTriangle({1, 1, 0}, {0, 0, 0}, {4, 0, 0}, {2, 0, 0});
