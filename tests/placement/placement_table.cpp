@@ -62,9 +62,6 @@ struct Table
         settings.count = count;
         settings.method = method;
         settings.refine = refine;
-        if (const char* text = std::getenv("P2_SURFELS")) settings.surfels = uint32_t(std::atoi(text));
-        if (const char* text = std::getenv("P2_ROUNDS")) settings.refineRounds = uint32_t(std::atoi(text));
-        if (const char* text = std::getenv("P2_RS")) settings.refineSurfels = uint32_t(std::atoi(text));
         PlaceReport report;
         return placeProbes(scene, settings, report);
     }
