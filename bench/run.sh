@@ -15,7 +15,7 @@ scenes=("$@")
 [[ ${#scenes[@]} -eq 0 ]] && scenes=(cornell-glossy)
 
 tools/install_packages.sh
-tools/build.sh release sconce_command
+tools/build.sh release sconce_command sconce_ray_accuracy
 sconce=$root/build/release/tools/sconce
 
 value() { python3 -c 'import json, sys; v = json.load(open(sys.argv[1]))
@@ -55,5 +55,6 @@ for scene in "${scenes[@]}"; do
     for tracer in ours b0plus; do
         step "$folder/compare_$tracer.json" "$sconce" compare "$folder/$tracer.exr" "$folder/reference.exr" -o "$folder/error_$tracer.png"
     done
+    step "$folder/rays.json" "$root/build/release/bench/sconce_ray_accuracy" "$scene" --field "$folder/ours.sconce" --field "$folder/grid.sconce"
     python3 bench/report/report.py "$folder" "$name" "$((SECONDS - began))"
 done

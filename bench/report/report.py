@@ -7,7 +7,7 @@ import os
 import platform
 import sys
 
-STEPS = ["place_ours", "place_grid", "bake_ours", "bake_grid", "reference", "render_ours", "render_b0plus", "compare_ours", "compare_b0plus"]
+STEPS = ["place_ours", "place_grid", "bake_ours", "bake_grid", "reference", "render_ours", "render_b0plus", "compare_ours", "compare_b0plus", "rays"]
 
 
 def load(folder):
@@ -40,7 +40,18 @@ def table(r):
         (3, "PSNR, dB", lambda j: j["psnr"]),
         (3, "FLIP", lambda j: j["flip"]),
     ]
-    return [(name, figure(get(r[pairs[pair][0]])), figure(get(r[pairs[pair][1]]))) for pair, name, get in wanted]
+    rows = [(name, figure(get(r[pairs[pair][0]])), figure(get(r[pairs[pair][1]]))) for pair, name, get in wanted]
+    rays = [  # of 100,000 glossy rays against Embree
+        ("rays right within 1 % of the diagonal, %", lambda j: 100.0 * j["right_1"]),
+        ("rays right within 0.2 %, %", lambda j: 100.0 * j["right_02"]),
+        ("false hits, %", lambda j: 100.0 * j["false"]),
+        ("leaks, %", lambda j: 100.0 * j["leak"]),
+        ("unresolved, %", lambda j: 100.0 * j["unresolved"]),
+        ("distance reads a ray", lambda j: j["distance_reads"]["mean"]),
+        ("hand-offs a ray", lambda j: j["handoffs_mean"]),
+        ("trace of 100,000 rays, ms", lambda j: j["trace_ms"]),
+    ]
+    return rows + [(name, figure(get(r["rays"][0])), figure(get(r["rays"][1]))) for name, get in rays]
 
 
 def main():
