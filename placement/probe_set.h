@@ -23,13 +23,13 @@ struct ProbeSet
 {
     std::vector<PlacedProbe> probes;
     std::optional<ProbeGrid> grid; // present when the probes are a full uniform grid
-    std::string method; // sdf | grid | ...
+    std::string method;            // sdf | grid | ...
     std::string scene;
     uint64_t seed = 0;
 };
 
-/// probes.json: {"probes":[{"position":[x,y,z],"why":"..."}], "method":..., "scene":..., "seed":..., "grid":{"count","origin","step"}}; only
-/// "probes" with its positions is required when reading. Written to a temporary name and renamed.
+/// probes.json: {"probes":[{"position":[x,y,z],"why":"..."}], "method":..., "scene":..., "seed":..., "grid":{"count","origin","step"}};
+/// only "probes" with its positions is required when reading. Written to a temporary name and renamed.
 Status saveProbes(const ProbeSet& set, const std::filesystem::path& file);
 Result<ProbeSet> loadProbes(const std::filesystem::path& file);
 

@@ -38,7 +38,8 @@ struct FieldBytes
 };
 FieldBytes bytesByPart(const FieldData& field);
 
-/// Words of one probe's distance map and the coarsest level of its chain, from chart and size. Faces must be a multiple of 4 from 8 to 2048.
+/// Words of one probe's distance map and the coarsest level of its chain, from chart and size. Faces must be a multiple of 4 from 8 to
+/// 2048.
 uint32_t coarsestLevel(uint32_t faceSize);
 uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size);
 uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size);

@@ -11,6 +11,9 @@ namespace sconce
 using Progress = std::function<bool(std::string_view stage, double done)>;
 
 /// Reports, and says whether to go on.
-inline bool report(const Progress& progress, std::string_view stage, double done) { return !progress || progress(stage, done); }
+inline bool report(const Progress& progress, std::string_view stage, double done)
+{
+    return !progress || progress(stage, done);
+}
 
 } // namespace sconce

@@ -27,8 +27,7 @@ struct Error
 };
 
 /// A value or an Error. Nothing is half-done when it holds an Error.
-template <class T>
-class [[nodiscard]] Result
+template <class T> class [[nodiscard]] Result
 {
 public:
     Result(T value) : state(std::in_place_index<0>, std::move(value)) {}
@@ -50,6 +49,9 @@ struct Nothing
 {
 };
 using Status = Result<Nothing>; // success or an Error
-inline Status success() { return Nothing{}; }
+inline Status success()
+{
+    return Nothing{};
+}
 
 } // namespace sconce

@@ -53,8 +53,8 @@ struct Material
     std::string name;
     vec4 baseColor{1.0f}; // linear, a is alpha
     TextureRef baseColorTexture;
-    float metallic = 0.0f;  // [0,1]
-    float roughness = 1.0f; // [0,1], GGX alpha = roughness^2
+    float metallic = 0.0f;               // [0,1]
+    float roughness = 1.0f;              // [0,1], GGX alpha = roughness^2
     TextureRef metallicRoughnessTexture; // g roughness, b metallic
     vec3 emission{0.0f};                 // radiance, W/(m^2 sr), emissive factor times KHR_materials_emissive_strength
     TextureRef emissionTexture;
@@ -74,12 +74,12 @@ struct Light
 {
     std::string name;
     LightType type = LightType::directional;
-    vec3 position{0.0f};              // metres; point and spot
+    vec3 position{0.0f};               // metres; point and spot
     vec3 direction{0.0f, -1.0f, 0.0f}; // unit, the way the light travels; directional and spot
-    vec3 intensity{0.0f};             // directional: irradiance on a facing surface, W/m^2; point and spot: W/sr
-    float range = 0.0f;               // metres, 0: unlimited
-    float innerCone = 0.0f;           // radians, half angle, spot
-    float outerCone = 0.785398163f;   // radians, half angle, spot
+    vec3 intensity{0.0f};              // directional: irradiance on a facing surface, W/m^2; point and spot: W/sr
+    float range = 0.0f;                // metres, 0: unlimited
+    float innerCone = 0.0f;            // radians, half angle, spot
+    float outerCone = 0.785398163f;    // radians, half angle, spot
 };
 
 struct Camera
@@ -117,7 +117,7 @@ struct Scene
     std::vector<Image> images;
     std::vector<Light> lights;
     std::vector<Camera> cameras;
-    vec3 sky{0.0f}; // radiance that arrives from every direction where nothing is hit, W/(m^2 sr)
+    vec3 sky{0.0f};                    // radiance that arrives from every direction where nothing is hit, W/(m^2 sr)
     std::vector<std::string> warnings; // what the importer ignored or mended, a sentence each
 
     Bounds bounds() const;

@@ -82,32 +82,34 @@ FieldData gridByRays(const RayScene& rays, glm::ivec3 count, glm::vec3 origin, g
     field.probes.resize(probes);
     field.distance.assign(probes * field.info.wordsPerProbe, 0);
     field.radiance.assign(probes * radianceWordsPerProbe(gpu::kChartOctahedral, size), 0);
-    parallelFor(probes, [&](size_t probe)
-    {
-        twin::LightFieldTwin<float> text(field, {});
-        const glm::ivec3 at(int(probe % count.x), int(probe / count.x % count.y), int(probe / count.x / count.y));
-        const glm::vec3 centre = origin + step * glm::vec3(at);
-        field.probes[probe] = {};
-        field.probes[probe].centre = (centre - field.info.origin) / field.info.scale;
-        uint32_t* words = field.distance.data() + probe * field.info.wordsPerProbe;
-        const uint32_t low = size / gpu::kLowFactor;
-        std::fill(words + size_t(size) * size, words + field.info.wordsPerProbe, 0x7c00u);
-        for (uint32_t y = 0; y < size; ++y)
-            for (uint32_t x = 0; x < size; ++x)
-            {
-                const glm::vec3 d = text.directionFromOctahedral(glm::vec2((float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size)));
-                uint32_t& word = words[y * size + x];
-                uint32_t& bounds = words[size_t(size) * size + (y / gpu::kLowFactor) * low + x / gpu::kLowFactor];
-                word = 0x7c00u; // sky
-                if (const auto hit = rays.closest(centre, d))
+    parallelFor(probes,
+                [&](size_t probe)
                 {
-                    const glm::vec3 n = glm::dot(hit->geometricNormal, d) > 0.0f ? -hit->geometricNormal : hit->geometricNormal;
-                    word = text.realToHalf(hit->t / field.info.scale) | (text.packNormal8(n) << 16);
-                }
-                const uint32_t r = word & 0xffffu;
-                bounds = std::min(bounds & 0xffffu, r) | (std::max(bounds >> 16, r) << 16);
-            }
-    });
+                    twin::LightFieldTwin<float> text(field, {});
+                    const glm::ivec3 at(int(probe % count.x), int(probe / count.x % count.y), int(probe / count.x / count.y));
+                    const glm::vec3 centre = origin + step * glm::vec3(at);
+                    field.probes[probe] = {};
+                    field.probes[probe].centre = (centre - field.info.origin) / field.info.scale;
+                    uint32_t* words = field.distance.data() + probe * field.info.wordsPerProbe;
+                    const uint32_t low = size / gpu::kLowFactor;
+                    std::fill(words + size_t(size) * size, words + field.info.wordsPerProbe, 0x7c00u);
+                    for (uint32_t y = 0; y < size; ++y)
+                        for (uint32_t x = 0; x < size; ++x)
+                        {
+                            const glm::vec3 d =
+                                text.directionFromOctahedral(glm::vec2((float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size)));
+                            uint32_t& word = words[y * size + x];
+                            uint32_t& bounds = words[size_t(size) * size + (y / gpu::kLowFactor) * low + x / gpu::kLowFactor];
+                            word = 0x7c00u; // sky
+                            if (const auto hit = rays.closest(centre, d))
+                            {
+                                const glm::vec3 n = glm::dot(hit->geometricNormal, d) > 0.0f ? -hit->geometricNormal : hit->geometricNormal;
+                                word = text.realToHalf(hit->t / field.info.scale) | (text.packNormal8(n) << 16);
+                            }
+                            const uint32_t r = word & 0xffffu;
+                            bounds = std::min(bounds & 0xffffu, r) | (std::max(bounds >> 16, r) << 16);
+                        }
+                });
     return field;
 }
 
