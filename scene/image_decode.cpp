@@ -37,6 +37,12 @@ bool startsWith(Bytes bytes, std::string_view magic)
     return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
+// Not inlined: no string of its own may live in a function that calls setjmp.
+[[gnu::noinline]] void noteSizeFault(std::string& fault, const Image& image)
+{
+    fault = sizeFault(image.width, image.height);
+}
+
 // Everything that must outlive a longjmp lives here, outside the function that calls setjmp.
 struct PngReader
 {
@@ -68,7 +74,7 @@ void readPng(png_structp png, png_infop info, PngReader& reader, Image& image)
     png_read_info(png, info);
     image.width = png_get_image_width(png, info);
     image.height = png_get_image_height(png, info);
-    reader.fault = sizeFault(image.width, image.height);
+    noteSizeFault(reader.fault, image);
     if (!reader.fault.empty()) return;
     png_set_expand(png); // palette, 1/2/4 bit grey and tRNS to 8 bit and alpha
     png_set_scale_16(png);
@@ -126,7 +132,7 @@ void readJpeg(JpegReader& reader, Bytes bytes, Image& image)
     jpeg_read_header(&reader.info, TRUE);
     image.width = reader.info.image_width;
     image.height = reader.info.image_height;
-    reader.fault = sizeFault(image.width, image.height);
+    noteSizeFault(reader.fault, image);
     if (reader.info.jpeg_color_space == JCS_CMYK || reader.info.jpeg_color_space == JCS_YCCK)
         reader.fault = "is a CMYK JPEG; convert it to RGB.";
     if (!reader.fault.empty()) return;
