@@ -110,7 +110,7 @@ Status SceneRenderer::make()
         if (auto s = image(*target, kGBufferFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
     for (auto [target, what] : {std::pair{&direct, "direct light"},
                                 {&beauty, "picture"},
-                                {&black, "placeholder of an effect that is off"},
+                                {&black, "black, for an effect that is off"},
                                 {&noisyDiffuse, "diffuse light"},
                                 {&smoothDiffuse, "denoised diffuse light"}})
     {
