@@ -32,10 +32,12 @@ private:
 
 std::string argumentFault(std::span<const vec3> probes, const BakeSettings& settings)
 {
-    if (!std::has_single_bit(settings.resolution) || settings.resolution < 16 || settings.resolution > 2048)
-        return "resolution is " + std::to_string(settings.resolution) + "; give a power of two in [16, 2048]";
     if (settings.chart != gpu::kChartCube && settings.chart != gpu::kChartOctahedral)
         return "chart is " + std::to_string(settings.chart) + "; give kChartCube or kChartOctahedral";
+    const bool even = settings.chart == gpu::kChartCube && settings.resolution % 32 == 0; // faces with three levels of the chain
+    if ((!even && !std::has_single_bit(settings.resolution)) || settings.resolution < 16 || settings.resolution > 2048)
+        return "resolution is " + std::to_string(settings.resolution) +
+               "; give a power of two in [16, 2048], or a multiple of 32 for the cube chart";
     if (settings.bounces > 8) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 8]";
     if (probes.empty() || probes.size() > 65535) return "there are " + std::to_string(probes.size()) + " probes; give between 1 and 65,535";
     for (size_t i = 0; i < probes.size(); ++i)

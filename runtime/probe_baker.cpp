@@ -250,7 +250,8 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
 {
     Push push = pushFor(vec3(0.0f));
-    push.level = std::min(info.faceSize, (octahedral ? 32u : 16u) * (moments ? 2u : 1u));
+    push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
+    while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
     push.extra = cells.address();
     dispatch(cmd, downsample[moments], {}, push, push.level, octahedral ? 1 : 6);
     push.words = irradiance.address();

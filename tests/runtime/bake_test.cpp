@@ -192,30 +192,33 @@ TEST_F(Bake, ChainBoundsEveryTexelBelow)
     addBox(scene, vec3(-2.0f), vec3(2.0f));
     addBox(scene, {0.5f, -1.0f, -0.2f}, {0.9f, 1.0f, 0.3f});
     addQuad(scene, {-1.5f, -1.5f, -1.0f}, {0.7f, 0.2f, 0.1f}, {0.1f, 1.0f, 0.4f});
-    const FieldData field = bake(scene, {vec3(0.1f, 0.2f, -0.3f)}, settingsFor(128));
-    ASSERT_EQ(field.info.topLevel, 6u);
-    const size_t faceWords = field.info.wordsPerProbe / 6;
-    forEachTexel(field,
-                 [&](Texel t)
-                 {
-                     const uint32_t word = wordAt(field, t);
-                     const float q = kText.halfToReal(word);
-                     const uint32_t* level = field.distance.data() + size_t(t.face) * faceWords;
-                     for (uint32_t l = 2, width = field.info.faceSize; l <= field.info.topLevel; l += 2)
+    for (const uint32_t resolution : {128u, 160u}) // 160: faces of 80, no power of two
+    {
+        const FieldData field = bake(scene, {vec3(0.1f, 0.2f, -0.3f)}, settingsFor(resolution));
+        ASSERT_EQ(field.info.topLevel, resolution == 128 ? 6u : 4u);
+        const size_t faceWords = field.info.wordsPerProbe / 6;
+        forEachTexel(field,
+                     [&](Texel t)
                      {
-                         level += size_t(width) * width;
-                         width /= 4;
-                         const uint32_t bounds = level[size_t(t.y >> l) * width + (t.x >> l)];
-                         for (const float dx : {-0.5f, 0.5f})
-                             for (const float dy : {-0.5f, 0.5f})
-                             {
-                                 const float corner =
-                                     q * (1.0f + kText.unpackGradient(word >> 16) * dx + kText.unpackGradient(word >> 24) * dy);
-                                 ASSERT_LE(corner, kText.halfToReal(bounds)) << "level " << l;
-                                 ASSERT_GE(corner, kText.halfToReal(bounds >> 16)) << "level " << l;
-                             }
-                     }
-                 });
+                         const uint32_t word = wordAt(field, t);
+                         const float q = kText.halfToReal(word);
+                         const uint32_t* level = field.distance.data() + size_t(t.face) * faceWords;
+                         for (uint32_t l = 2, width = field.info.faceSize; l <= field.info.topLevel; l += 2)
+                         {
+                             level += size_t(width) * width;
+                             width /= 4;
+                             const uint32_t bounds = level[size_t(t.y >> l) * width + (t.x >> l)];
+                             for (const float dx : {-0.5f, 0.5f})
+                                 for (const float dy : {-0.5f, 0.5f})
+                                 {
+                                     const float corner =
+                                         q * (1.0f + kText.unpackGradient(word >> 16) * dx + kText.unpackGradient(word >> 24) * dy);
+                                     ASSERT_LE(corner, kText.halfToReal(bounds)) << "level " << l;
+                                     ASSERT_GE(corner, kText.halfToReal(bounds >> 16)) << "level " << l;
+                                 }
+                         }
+                     });
+    }
 }
 
 TEST_F(Bake, SunOnAPlaneGivesAlbedoTimesIrradianceOverPi)
@@ -314,18 +317,21 @@ TEST_F(Bake, FurnaceConvergesGeometrically)
     scene.materials[0].baseColor = vec4(vec3((0.5f - 0.04f) / 0.96f), 1.0f); // reflects one half
     scene.materials[0].emission = vec3(1.0f);
     addBox(scene, vec3(-1.0f), vec3(1.0f));
-    BakeSettings settings = settingsFor(64, 3);
-    settings.scene.light.emitterSamples = 320;
-    const FieldData field = bake(scene, {vec3(0.0f)}, settings);
-    double mean = 0.0, weights = 0.0;
-    forEachTexel(field,
-                 [&](Texel t)
-                 {
-                     const float l = glm::length(towards(field, t));
-                     mean += radianceAt(field, t).g / (l * l * l);
-                     weights += 1.0f / (l * l * l);
-                 });
-    EXPECT_NEAR(mean / weights, 1.0 + 0.5 + 0.25 + 0.125 + 0.0625, 0.06);
+    for (const uint32_t resolution : {64u, 96u}) // 96: faces of 48, no power of two
+    {
+        BakeSettings settings = settingsFor(resolution, 3);
+        settings.scene.light.emitterSamples = 320;
+        const FieldData field = bake(scene, {vec3(0.0f)}, settings);
+        double mean = 0.0, weights = 0.0;
+        forEachTexel(field,
+                     [&](Texel t)
+                     {
+                         const float l = glm::length(towards(field, t));
+                         mean += radianceAt(field, t).g / (l * l * l);
+                         weights += 1.0f / (l * l * l);
+                     });
+        EXPECT_NEAR(mean / weights, 1.0 + 0.5 + 0.25 + 0.125 + 0.0625, 0.06) << "resolution " << resolution;
+    }
 }
 
 TEST_F(Bake, AlphaMaskedHoleLetsTheViewAndTheSunThrough)
