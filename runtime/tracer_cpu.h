@@ -30,7 +30,6 @@ template <class Real> struct LightFieldTwin
     static constexpr uint kNoProbe = gpu::kNoProbe;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
-    static constexpr uint kLowFactor = gpu::kLowFactor;
 
     explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data)
     {
@@ -75,8 +74,6 @@ template <class Real> struct LightFieldTwin
 #include "shaders/shared/probe_trace.h"
 
 #include "shaders/shared/light_lookup.h"
-
-#include "shaders/shared/baseline_b0.h"
 
 #include "shaders/shared/ray_query.h"
 };

@@ -34,10 +34,14 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/octree_descent.h"
 #include "shared/probe_trace.h"
 #include "shared/light_lookup.h"
-#include "shared/baseline_b0.h"
 #include "shared/ray_query.h"
-#ifdef SCONCE_TRACER_B0PLUS
-#define sconceQuery b0QueryRay // the baseline, for the bench
+#ifdef SCONCE_BASELINE // one of the bench's opponents, by number, in our tracer's place
+#include "shared/baseline.h"
+const uint kBaseline = SCONCE_BASELINE;
+#include "shared/baseline_b0.h"
+#include "shared/baseline_wang.h"
+#include "shared/baseline_trace.h"
+#define sconceQuery baselineQuery
 #else
 #define sconceQuery queryRay
 #endif

@@ -83,7 +83,7 @@ void addBakeCommand(CLI::App& app, Context& context)
         ->type_name("N");
     const std::map<std::string, uint32_t> charts{{"cube", gpu::kChartCube}, {"octahedral", gpu::kChartOctahedral}};
     bake->add_option("--chart", settings.chart,
-                     "cube: six faces a probe; octahedral: one map a probe, for the b0plus tracer (default: cube)")
+                     "cube: six faces a probe; octahedral: one map a probe, for the tracers b0, b0plus and b0plus-octree (default: cube)")
         ->transform(unlisted(CLI::CheckedTransformer(charts)))
         ->type_name("cube|octahedral");
     bake->add_option("--memory", options->memoryMb,

@@ -130,9 +130,8 @@ int runRender(const RenderOptions& options, const Context& context)
     if (!camera) return fail(camera.error());
     const Result<IndirectEffects> effects = chooseEffects(options.effects, *scene);
     if (!effects) return fail(effects.error());
-    const Result<FieldData> data = loadField(options.field);
+    const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
     if (!data) return fail(data.error());
-    if (Status status = fitsTracer(*data, options.field, options.tracer); !status) return fail(status.error());
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, "Note: the light field was baked from scene '" + data->sceneName + "', this is '" + scene->name + "'.");
 
@@ -153,10 +152,10 @@ int runRender(const RenderOptions& options, const Context& context)
     settings.effects.denoise = effects->denoise && !options.noDenoise;
     settings.roughness = options.roughness;
     settings.seed = options.seed;
-    if (options.tracer == "b0plus")
+    if (const std::optional<Baseline> baseline = baselineNamed(options.tracer))
     {
-        settings.glossyShader = traceGlossyB0Plus();
-        settings.normalOffset += kB0PlusOffset / (data->info.diagonal * data->info.scale);
+        settings.glossyShader = traceGlossyPass(*baseline);
+        settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
     }
     Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(**gpu, *deviceScene, *field, settings);
     if (!renderer) return fail(renderer.error());
@@ -220,11 +219,7 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->add_option("--effects", options->effects,
                      "auto: what the scene calls for; all; none; or a list of diffuse, glossy, denoise (default: auto)")
         ->type_name("auto|all|none|LIST");
-    command
-        ->add_option("--tracer", options->tracer,
-                     "ours, or b0plus: the uniform-grid baseline, which needs a grid of octahedral probes (default: ours)")
-        ->check(unlisted(CLI::IsMember({"ours", "b0plus"})))
-        ->type_name("ours|b0plus");
+    addTracer(command, options->tracer);
     command
         ->add_option("--samples", options->samples,
                      "Glossy rays a pixel, and eight times as many samples of emitters and of the sky; noise falls with the square root, "

@@ -42,21 +42,25 @@ template <class Trace> Status inPieces(size_t rays, const Progress& progress, co
     return success();
 }
 
-Status traceOnCpu(const FieldData& field, bool baseline, Rays rays, Hits hits, const Progress& progress, Json& json)
+Status traceOnCpu(const FieldData& field, std::optional<Baseline> baseline, Rays rays, Hits hits, const Progress& progress, Json& json)
 {
     constexpr size_t kBatch = 256;
     const Stopwatch watch;
     Status status = inPieces(rays.size(), progress,
                              [&](size_t first, size_t count)
                              {
+                                 if (baseline)
+                                 {
+                                     traceBaselineOnCpu(field, *baseline, rays.subspan(first, count), hits.subspan(first, count));
+                                     return success();
+                                 }
                                  parallelFor((count + kBatch - 1) / kBatch,
                                              [&](size_t batch)
                                              {
                                                  twin::LightFieldTwin<float> text(field, Quality{}.trace);
                                                  const size_t begin = first + batch * kBatch, end = std::min(begin + kBatch, first + count);
                                                  for (size_t i = begin; i < end; ++i)
-                                                     hits[i] = baseline ? text.b0QueryRay(rays[i].origin, rays[i].direction)
-                                                                        : text.queryRay(rays[i].origin, rays[i].direction);
+                                                     hits[i] = text.queryRay(rays[i].origin, rays[i].direction);
                                              });
                                  return success();
                              });
@@ -65,8 +69,8 @@ Status traceOnCpu(const FieldData& field, bool baseline, Rays rays, Hits hits, c
     return status;
 }
 
-Status traceOnDevice(const FieldData& field, bool baseline, const std::string& name, Rays rays, Hits hits, const Progress& progress,
-                     Json& json)
+Status traceOnDevice(const FieldData& field, std::optional<Baseline> baseline, const std::string& name, Rays rays, Hits hits,
+                     const Progress& progress, Json& json)
 {
     const Result<OwnDevice> device = OwnDevice::create({.device = name});
     if (!device) return device.error();
@@ -74,7 +78,7 @@ Status traceOnDevice(const FieldData& field, bool baseline, const std::string& n
     if (!gpu) return gpu.error();
     Result<LightField> lightField = LightField::create(**gpu, field);
     if (!lightField) return lightField.error();
-    Result<RayTracer> tracer = RayTracer::create(**gpu, *lightField, baseline ? traceRaysB0Plus() : Spirv{});
+    Result<RayTracer> tracer = RayTracer::create(**gpu, *lightField, baseline ? traceRaysPass(*baseline) : Spirv{});
     if (!tracer) return tracer.error();
     double milliseconds = 0.0;
     Status status = inPieces(rays.size(), progress,
@@ -93,12 +97,11 @@ Status traceOnDevice(const FieldData& field, bool baseline, const std::string& n
 int runTrace(const TraceOptions& options, const Context& context)
 {
     const Stopwatch watch;
-    const Result<FieldData> field = loadField(options.field);
+    const Result<FieldData> field = loadFieldFor(options.field, options.tracer);
     if (!field) return fail(field.error());
     const Result<std::vector<gpu::Ray>> rays = readRays(options.rays);
     if (!rays) return fail(rays.error());
-    const bool baseline = options.tracer == "b0plus";
-    if (Status status = fitsTracer(*field, options.field, options.tracer); !status) return fail(status.error());
+    const std::optional<Baseline> baseline = baselineNamed(options.tracer);
 
     std::vector<gpu::RayHit> hits(rays->size());
     const Progress progress = consoleProgress(context);
@@ -142,11 +145,7 @@ void addTraceCommand(CLI::App& app, Context& context)
         ->required()
         ->type_name("FILE");
     command->add_option("-o,--output", options->output, "CSV to write: a line a ray, in order (required)")->required()->type_name("FILE");
-    command
-        ->add_option("--tracer", options->tracer,
-                     "ours, or b0plus: the uniform-grid baseline, which needs a grid of octahedral probes (default: ours)")
-        ->check(unlisted(CLI::IsMember({"ours", "b0plus"})))
-        ->type_name("ours|b0plus");
+    addTracer(command, options->tracer);
     command->add_flag("--cpu", options->cpu, "Trace on the CPU, with the text that the device runs (default: off)");
     addDevice(command, options->device);
     onChosen(command, context, options, runTrace);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "bench/baselines.h"
 #include "runtime/light_field_file.h"
 
 namespace sconce::tools
@@ -72,17 +73,35 @@ void printField(const FieldData& field, const std::string& file)
     std::cout << std::endl;
 }
 
-Status fitsTracer(const FieldData& field, const std::string& file, const std::string& tracer)
+Result<FieldData> loadFieldFor(const std::string& file, const std::string& tracer)
 {
-    const gpu::LightFieldInfo& info = field.info;
-    if (info.probeCount == 0) return Error{ErrorCode::badInput, "Light field '" + file + "' has no probes; place some and bake it again."};
-    if (tracer == "b0plus" && (info.chart != gpu::kChartOctahedral || info.gridX == 0))
-        return Error{ErrorCode::badInput, "Tracer b0plus needs a grid of octahedral probes; '" + file +
-                                              "' has none. Place with --method grid and bake with --chart octahedral."};
-    if (tracer == "ours" && info.chart != gpu::kChartCube)
+    Result<FieldData> field = loadField(file);
+    if (!field) return field;
+    if (const std::optional<Baseline> baseline = baselineNamed(tracer))
+    {
+        Result<FieldData> made = baselineField(std::move(*field), *baseline);
+        if (!made) return Error{made.error().code, "'" + file + "': " + made.error().message};
+        return made;
+    }
+    if (field->info.probeCount == 0)
+        return Error{ErrorCode::badInput, "Light field '" + file + "' has no probes; place some and bake it again."};
+    if (field->info.chart != gpu::kChartCube)
         return Error{ErrorCode::badInput,
                      "Tracer ours needs cube probes; '" + file + "' has octahedral ones. Bake with --chart cube, or give --tracer b0plus."};
-    return success();
+    return field;
+}
+
+void addTracer(CLI::App* command, std::string& tracer)
+{
+    std::vector<std::string> names{"ours"};
+    for (Baseline baseline : kBaselines) names.emplace_back(baselineName(baseline));
+    command
+        ->add_option("--tracer", tracer,
+                     "ours, or an opponent: b0 (McGuire et al. 2017 as published) and b0plus (its defects mended) on a grid of octahedral "
+                     "probes, b0plus-octree on octahedral probes anywhere, wang (Wang et al. 2019) on octahedral maps that it makes from "
+                     "cube faces, as large as a face (default: ours)")
+        ->check(unlisted(CLI::IsMember(names)))
+        ->type_name("ours|b0|b0plus|b0plus-octree|wang");
 }
 
 } // namespace sconce::tools

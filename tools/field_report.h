@@ -12,7 +12,11 @@ namespace sconce::tools
 Json fieldJson(const FieldData& field);
 void printField(const FieldData& field, const std::string& file);
 
-/// Whether a tracer ("ours", "b0plus") can read the field; the sentence says how to bake one that it can.
-Status fitsTracer(const FieldData& field, const std::string& file, const std::string& tracer);
+/// A light field's file as a tracer reads it: "ours", or an opponent's name (bench/baselines.h), whose maps are made from the file's. The
+/// error's sentence says how to bake a field that the tracer can read.
+Result<FieldData> loadFieldFor(const std::string& file, const std::string& tracer);
+
+/// --tracer ours|b0|b0plus|b0plus-octree|wang
+void addTracer(CLI::App* command, std::string& tracer);
 
 } // namespace sconce::tools

@@ -1,11 +1,13 @@
-// Baseline B0+: the tracer of McGuire et al. 2017, "Real-Time Global Illumination using Precomputed Light Field Probes", section 4, on a
-// uniform grid of octahedral probes, rebuilt from the paper's formulas and constants, with its known defects mended: exact stepping of both
-// levels (no texel is jumped), the largest of the three denominators for the ray's radial distance, the hand-over point taken where the
-// step begins, the paper's re-pick of the cell as the ray proceeds, borders clamped. Rays start 1 cm off their surface (the caller's part).
-// Shared text, see probe_trace.h; needs distanceWord, radianceWord and `field` with a grid and the octahedral chart.
+// One probe of baselines B0 and B0+: the tracer of McGuire et al. 2017, "Real-Time Global Illumination using Precomputed Light Field
+// Probes", section 4, on octahedral probes, rebuilt from the paper's and its supplement's formulas and constants. kBaseline switches what
+// differs. B0 (kBaselineB0) keeps the supplement's defects; B0+ mends them:
+//   the ray's distance in a direction  one of two denominators by a fixed test      | the largest of three
+//   stepping                           one texel along the longer axis, bumps       | exact: no texel is jumped
+//   hand-over point                    direction where the run of fine texels began | where the step began
+// In both, the hit test stands behind the march loops, where it costs the other lanes nothing; its results do not depend on that.
+// Shared text, see probe_trace.h; needs distanceWord, `field` with the octahedral chart, whose info.topLevel is log2 of its low factor, and kBaseline.
 
-SCONCE_CONST int kB0Tries = 8;    // probes of a cell
-SCONCE_CONST int kB0Limit = 64;   // probes of a ray, over all cells
+SCONCE_CONST bool kPublished = kBaseline == kBaselineB0;
 
 struct B0Ray
 {
@@ -14,22 +16,39 @@ struct B0Ray
     uint probe;
     real tMin;      // resumes here
     int reads;
-    vec2 pixel;
+    real t;         // of a hit
+    vec2 pixel;     // of the last texel that stopped the march
     uint word;
-    real t;
+    // where the march stopped
+    bool certain;   // the ray is behind everything the texel shows: nothing to test
+    real nearest;   // the lesser distance of the ray from the probe over the step
+    vec3 before;    // hand-over point, relative to the probe
 };
 
 /// Distance from the probe, in direction v, of the point of the ray that lies in that direction.
-SCONCE_FN real b0Radial(vec3 o, vec3 d, vec3 v)
+SCONCE_FN real b0Radial(SCONCE_IN(B0Ray) ray, vec3 v)
 {
-    vec3 n = cross(o, d);
-    vec3 m = cross(v, d);
-    real ax = abs(m.x), ay = abs(m.y), az = abs(m.z);
-    real r = ax >= ay && ax >= az ? n.x / m.x : (ay >= az ? n.y / m.y : n.z / m.z);
+    vec3 o = ray.relative;
+    vec3 d = ray.direction;
+    real r;
+    if (kPublished)
+    {
+        real first = v.y * d.z - v.z * d.y;
+        r = abs(first) > real(0.1) ? (o.y * d.z - o.z * d.y) / first : (o.x * d.y - o.y * d.x) / (v.x * d.y - v.y * d.x);
+    }
+    else
+    {
+        vec3 n = cross(o, d);
+        vec3 m = cross(v, d);
+        real ax = abs(m.x), ay = abs(m.y), az = abs(m.z);
+        r = ax >= ay && ax >= az ? n.x / m.x : (ay >= az ? n.y / m.y : n.z / m.z);
+    }
     return r > real(0.0) ? r : real(0.0); // NaN too
 }
 
 SCONCE_FN vec3 b0Direction(vec2 pixel) { return directionFromOctahedral(pixel / real(field.faceSize)); }
+
+SCONCE_FN real b0Distance(uint word) { return (word & 0xffffu) == 0x7c00u ? real(1e9) : halfToReal(word); }
 
 SCONCE_FN uint b0Fetch(SCONCE_INOUT(B0Ray) ray, int x, int y)
 {
@@ -38,203 +57,242 @@ SCONCE_FN uint b0Fetch(SCONCE_INOUT(B0Ray) ray, int x, int y)
     return distanceWord(ray.probe * field.wordsPerProbe + uint(min(max(y, 0), n - 1) * n + min(max(x, 0), n - 1)));
 }
 
-SCONCE_FN uint b0FetchLow(SCONCE_INOUT(B0Ray) ray, int x, int y)
+SCONCE_FN int b0LowFactor() { return 1 << int(field.topLevel); }
+
+SCONCE_FN real b0FetchLow(SCONCE_INOUT(B0Ray) ray, int x, int y)
 {
     int n = int(field.faceSize);
-    int m = n / int(kLowFactor);
+    int m = n >> int(field.topLevel);
     ++ray.reads;
-    return distanceWord(ray.probe * field.wordsPerProbe + uint(n * n + min(max(y, 0), m - 1) * m + min(max(x, 0), m - 1)));
+    return b0Distance(distanceWord(ray.probe * field.wordsPerProbe + uint(n * n + min(max(y, 0), m - 1) * m + min(max(x, 0), m - 1))));
 }
 
-/// Where the line P0 + l dP leaves the cell of `size` texels that it is in just after l.
-SCONCE_FN real b0CellExit(vec2 P0, vec2 dP, real l, int size, SCONCE_OUT(ivec2) cell)
+SCONCE_FN void b0Stop(SCONCE_INOUT(B0Ray) ray, vec2 pixel, uint word, real nearest, vec3 before)
 {
-    vec2 p = P0 + (l + real(1e-6)) * dP;
-    cell = ivec2(int(floor(p.x / real(size))), int(floor(p.y / real(size))));
-    real bx = real(size) * (real(cell.x) + (dP.x > real(0.0) ? real(1.0) : real(0.0)));
-    real by = real(size) * (real(cell.y) + (dP.y > real(0.0) ? real(1.0) : real(0.0)));
-    real lx = abs(dP.x) > real(1e-9) ? (bx - P0.x) / dP.x : real(2.0);
-    real ly = abs(dP.y) > real(1e-9) ? (by - P0.y) / dP.y : real(2.0);
-    return min(real(1.0), max(min(lx, ly), l + real(1e-6)));
+    ray.pixel = pixel;
+    ray.word = word;
+    ray.nearest = nearest;
+    ray.before = before;
+    ray.certain = false;
 }
 
-/// The fine texels of the segment between l0 and l1.
-SCONCE_FN uint b0FineMarch(SCONCE_INOUT(B0Ray) ray, vec2 P0, vec2 dP, real l0, real l1)
+/// The hit rule at the texel where the march stopped.
+SCONCE_FN uint b0Resolve(SCONCE_INOUT(B0Ray) ray)
 {
-    real l = l0;
-    vec3 va = b0Direction(P0 + l * dP);
-    real ra = b0Radial(ray.relative, ray.direction, va);
-    for (int i = 0; i < 4 * int(kLowFactor) && l < l1; ++i)
+    real tBefore = dot(ray.before - ray.relative, ray.direction);
+    if (ray.certain)
     {
-        ivec2 cell;
-        real le = min(b0CellExit(P0, dP, l, 1, cell), l1);
-        vec3 vb = b0Direction(P0 + le * dP);
-        real rb = b0Radial(ray.relative, ray.direction, vb);
-        uint word = b0Fetch(ray, cell.x, cell.y);
-        real r = (word & 0xffffu) == 0x7c00u ? real(1e9) : halfToReal(word);
-        if (max(ra, rb) >= r)
+        ray.tMin = max(ray.tMin, tBefore);
+        return kUnknown;
+    }
+    real r = b0Distance(ray.word);
+    vec3 v = b0Direction(ray.pixel);
+    vec3 n = unpackNormal8(ray.word >> 16);
+    real t = dot(r * v - ray.relative, ray.direction);
+    real metres = real(field.scale);
+    real thickness = (real(0.03) + real(0.47) * max(dot(ray.direction, v), real(0.0)) * (real(2.0) - abs(dot(ray.direction, n))) *
+                                       clamp(real(0.1) * t * metres, real(0.05), real(1.0))) / metres;
+    if (ray.nearest < r + thickness && dot(n, ray.direction) < real(0.0))
+    {
+        ray.t = t;
+        return kHit;
+    }
+    ray.tMin = max(ray.tMin, min(t, tBefore));
+    return kUnknown;
+}
+
+/// A straight line P0 + l dP, l in [0,1], over the map's texels.
+struct B0Line
+{
+    vec2 P0;
+    vec2 dP;
+    vec2 iP; // 1 / dP
+};
+
+SCONCE_FN vec3 b0LineDirection(SCONCE_IN(B0Line) line, real l) { return b0Direction(line.P0 + l * line.dP); }
+
+SCONCE_FN ivec2 b0FirstTexel(SCONCE_IN(B0Line) line)
+{
+    int last = int(field.faceSize) - 1;
+    return ivec2(min(max(int(line.P0.x), 0), last), min(max(int(line.P0.y), 0), last));
+}
+
+/// Where the line leaves the cell of 2^level texels that holds `texel`, not before l; `next` is the texel it enters there. Texels are
+/// stepped as integers, so that each is visited once.
+SCONCE_FN real b0Leave(SCONCE_IN(B0Line) line, ivec2 texel, int level, real l, SCONCE_OUT(ivec2) next)
+{
+    int mask = (1 << level) - 1;
+    ivec2 low = ivec2(texel.x & ~mask, texel.y & ~mask);
+    bool right = line.dP.x > real(0.0), up = line.dP.y > real(0.0);
+    real lx = (real(right ? low.x + mask + 1 : low.x) - line.P0.x) * line.iP.x;
+    real ly = (real(up ? low.y + mask + 1 : low.y) - line.P0.y) * line.iP.y;
+    real le = max(min(lx, ly), l);
+    if (lx <= ly)
+    {
+        next.x = right ? low.x + mask + 1 : low.x - 1;
+        next.y = min(max(int(line.P0.y + le * line.dP.y), low.y), low.y + mask);
+    }
+    else
+    {
+        next.x = min(max(int(line.P0.x + le * line.dP.x), low.x), low.x + mask);
+        next.y = up ? low.y + mask + 1 : low.y - 1;
+    }
+    return le;
+}
+
+/// The fine texels of the line within a low-resolution texel, from `first` at l0 on. True: the march stopped.
+SCONCE_FN bool b0FineExact(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line, ivec2 first, real l0)
+{
+    int low = int(field.topLevel);
+    ivec2 texel = first;
+    real l = l0;
+    vec3 va = b0LineDirection(line, l);
+    real ra = b0Radial(ray, va);
+    for (int i = 0; i < 2 * b0LowFactor(); ++i)
+    {
+        ivec2 next;
+        real le = min(b0Leave(line, texel, 0, l, next), real(1.0));
+        vec3 vb = b0LineDirection(line, le);
+        real rb = b0Radial(ray, vb);
+        uint word = b0Fetch(ray, texel.x, texel.y);
+        if (max(ra, rb) >= b0Distance(word))
         {
-            vec2 sampled = P0 + real(0.5) * (l + le) * dP;
-            vec3 v = b0Direction(sampled);
-            vec3 n = unpackNormal8(word >> 16);
-            real th = dot(r * v - ray.relative, ray.direction);
-            real metres = real(field.scale);
-            real tau = (real(0.03) + real(0.47) * max(dot(ray.direction, v), real(0.0)) * (real(2.0) - abs(dot(ray.direction, n))) *
-                                         clamp(real(0.1) * th * metres, real(0.05), real(1.0))) / metres;
-            if (min(ra, rb) < r + tau && dot(n, ray.direction) < real(0.0))
-            {
-                ray.t = th;
-                ray.pixel = sampled;
-                ray.word = word;
-                return kHit;
-            }
-            ray.pixel = sampled;
-            ray.word = word;
-            ray.tMin = max(ray.tMin, min(th, dot(ra * va - ray.relative, ray.direction)));
-            return kUnknown;
+            b0Stop(ray, line.P0 + real(0.5) * (l + le) * line.dP, word, min(ra, rb), ra * va);
+            return true;
         }
+        if (le >= real(1.0) || (next.x >> low) != (first.x >> low) || (next.y >> low) != (first.y >> low)) return false;
+        texel = next;
         l = le;
         ra = rb;
         va = vb;
     }
-    return kMiss;
+    return false;
 }
 
-/// One straight piece of the ray's image: within an octant of the map.
-SCONCE_FN uint b0Segment(SCONCE_INOUT(B0Ray) ray, real t0, real t1)
+SCONCE_FN bool b0SegmentExact(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line)
+{
+    int low = int(field.topLevel);
+    ivec2 texel = b0FirstTexel(line);
+    real l = real(0.0);
+    real ra = b0Radial(ray, b0LineDirection(line, l));
+    for (int i = 0; i < 2 * (int(field.faceSize) >> low) + 2; ++i)
+    {
+        ivec2 next;
+        real le = min(b0Leave(line, texel, low, l, next), real(1.0));
+        real rb = b0Radial(ray, b0LineDirection(line, le));
+        if (b0FetchLow(ray, texel.x >> low, texel.y >> low) < max(ra, rb) && b0FineExact(ray, line, texel, l)) return true;
+        if (le >= real(1.0)) return false;
+        texel = next;
+        l = le;
+        ra = rb;
+    }
+    return false;
+}
+
+/// The supplement's run of fine texels from `entry` to `leave` (pixels): one texel a step along the longer axis, sampled at the step's middle.
+SCONCE_FN bool b0FinePublished(SCONCE_INOUT(B0Ray) ray, vec2 entry, vec2 leave)
+{
+    vec2 across = leave - entry;
+    real steps = max(abs(across.x), abs(across.y));
+    vec3 v0 = b0Direction(entry); // not moved on with the steps: the supplement's hand-over is measured from here
+    real ra = b0Radial(ray, v0);
+    for (int i = 0; i < 2 * b0LowFactor() + 4 && real(i) <= steps; ++i)
+    {
+        vec2 middle = entry + min((real(i) + real(0.5)) / max(steps, real(1e-6)), real(1.0)) * across;
+        real rb = b0Radial(ray, b0Direction(entry + (real(i) + real(1.0)) / max(steps, real(1e-6)) * across));
+        uint word = b0Fetch(ray, int(middle.x), int(middle.y));
+        if (max(ra, rb) >= b0Distance(word))
+        {
+            b0Stop(ray, middle, word, min(ra, rb), ra * v0);
+            return true;
+        }
+        ra = rb;
+    }
+    return false;
+}
+
+/// The supplement's walk over the low-resolution texels from `entry` (pixels) to P1. True: a texel that may hold the hit, entered at
+/// `entry` and left at `leave`.
+SCONCE_FN bool b0LowPublished(SCONCE_INOUT(B0Ray) ray, SCONCE_INOUT(vec2) entry, vec2 P1, SCONCE_OUT(vec2) leave)
+{
+    real size = real(b0LowFactor());
+    vec2 start = entry;
+    vec2 p = entry / size;
+    vec2 end = P1 / size;
+    leave = P1;
+    if (dot(end - p, end - p) < real(1e-4)) end = end + vec2(real(0.01), real(0.01));
+    vec2 along = end - p;
+    bool xMajor = abs(along.x) >= abs(along.y);
+    vec2 dp = along / (xMajor ? abs(along.x) : abs(along.y)); // the longer axis advances by one
+    for (int i = 0; i < 4 * (int(field.faceSize) >> int(field.topLevel)) + 4; ++i)
+    {
+        vec2 left = end - p;
+        if ((xMajor ? left.x * dp.x : left.y * dp.y) <= real(0.0)) return false;
+        ivec2 cell = ivec2(int(floor(p.x)), int(floor(p.y)));
+        real bx = dp.x > real(0.0) ? real(cell.x) + real(1.0) - p.x : p.x - real(cell.x);
+        real by = dp.y > real(0.0) ? real(cell.y) + real(1.0) - p.y : p.y - real(cell.y);
+        real s = min(abs(dp.x) > real(1e-9) ? bx / abs(dp.x) : real(1e9), abs(dp.y) > real(1e-9) ? by / abs(dp.y) : real(1e9));
+        entry = p * size;
+        leave = (p + s * dp) * size;
+        if (dot(leave - start, leave - start) > dot(P1 - start, P1 - start)) leave = P1;
+        real nearest = b0FetchLow(ray, cell.x, cell.y);
+        if (nearest < max(b0Radial(ray, b0Direction(entry)), b0Radial(ray, b0Direction(leave)))) return true;
+        p += (s + real(0.001)) * dp;
+    }
+    return false;
+}
+
+SCONCE_FN bool b0SegmentPublished(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line)
+{
+    vec2 P1 = line.P0 + line.dP;
+    vec2 p = line.P0;
+    vec2 leave;
+    for (int i = 0; i < 4 * (int(field.faceSize) >> int(field.topLevel)) + 4; ++i)
+    {
+        if (!b0LowPublished(ray, p, P1, leave)) return false;
+        if (b0FinePublished(ray, p, leave)) return true;
+        vec2 rest = P1 - p;
+        real length_ = length(rest);
+        if (!(length_ > real(0.0)) || dot(rest, P1 - leave) <= length_) return false; // within a texel of the end, which may go untested
+        p = leave + real(0.1) / length_ * rest;
+    }
+    return false;
+}
+
+/// The image of the ray between t0 and t1, a straight line within an octant of the map.
+SCONCE_FN B0Line b0Project(SCONCE_IN(B0Ray) ray, real t0, real t1)
 {
     real bump = real(0.001) / real(field.scale); // 1 mm: keeps both ends off the octants' borders, which have two images
     vec3 start = ray.relative + (t0 + bump) * ray.direction;
     vec3 end = ray.relative + (t1 - bump) * ray.direction;
-    real tiny = real(0.032) / real(field.scale);
-    if (dot(start, start) < tiny * tiny) start = ray.direction;
-    vec2 P0 = octahedralFromDirection(start) * real(field.faceSize);
-    vec2 dP = octahedralFromDirection(end) * real(field.faceSize) - P0;
-    real l = real(0.0);
-    for (int i = 0; i < 4 * int(field.faceSize / kLowFactor) + 4 && l < real(1.0); ++i)
-    {
-        ivec2 cell;
-        real le = b0CellExit(P0, dP, l, int(kLowFactor), cell);
-        real nearest = halfToReal(b0FetchLow(ray, cell.x, cell.y));
-        real ra = b0Radial(ray.relative, ray.direction, b0Direction(P0 + l * dP));
-        real rb = b0Radial(ray.relative, ray.direction, b0Direction(P0 + le * dP));
-        if (nearest < max(ra, rb))
-        {
-            uint status = b0FineMarch(ray, P0, dP, l, le);
-            if (status != kMiss) return status;
-        }
-        l = le;
-    }
-    return kMiss;
+    if (dot(start, start) < real(0.001) / real(field.scale * field.scale)) start = ray.direction; // square metres
+    B0Line line;
+    line.P0 = octahedralFromDirection(start) * real(field.faceSize);
+    line.dP = octahedralFromDirection(end) * real(field.faceSize) - line.P0;
+    line.iP = vec2(abs(line.dP.x) > real(1e-9) ? real(1.0) / line.dP.x : real(-1e9), abs(line.dP.y) > real(1e-9) ? real(1.0) / line.dP.y : real(-1e9));
+    return line;
 }
 
-SCONCE_FN uint b0Probe(SCONCE_INOUT(B0Ray) ray, real tMax)
+struct B0Octants
 {
-    real t[5];
+    real t[5]; // segment i lies between t[i] and t[i + 1]
+};
+
+/// Cuts the ray from ray.tMin to tMax where it crosses the coordinate planes through the probe: up to four segments.
+SCONCE_FN B0Octants b0Octants(SCONCE_IN(B0Ray) ray, real tMax)
+{
+    B0Octants cut;
     for (int a = 0; a < 3; ++a)
     {
         real cross_ = abs(ray.direction[a]) > real(1e-9) ? -ray.relative[a] / ray.direction[a] : real(-1.0);
-        t[a + 1] = clamp(cross_, ray.tMin, tMax);
+        cut.t[a + 1] = clamp(cross_, ray.tMin, tMax);
     }
-    t[0] = ray.tMin;
-    t[4] = tMax;
-    real low = min(t[1], t[2]), high = max(t[1], t[2]);
-    t[1] = min(low, t[3]);
-    real middle = max(low, t[3]);
-    t[2] = min(middle, high);
-    t[3] = max(middle, high);
-    for (int i = 0; i < 4; ++i)
-    {
-        if (t[i + 1] - t[i] < real(0.001) / real(field.scale)) continue;
-        uint status = b0Segment(ray, t[i], t[i + 1]);
-        if (status != kMiss) return status;
-    }
-    return kMiss;
-}
-
-SCONCE_FN ivec3 b0Cell(vec3 p)
-{
-    vec3 g = (p - vec3(field.gridOrigin)) / vec3(field.gridStep);
-    return ivec3(int(clamp(floor(g.x), real(0.0), real(field.gridX - 1u))), int(clamp(floor(g.y), real(0.0), real(field.gridY - 1u))),
-                 int(clamp(floor(g.z), real(0.0), real(field.gridZ - 1u))));
-}
-
-/// Corner of the cell whose probe is nearest to the point, bits xyz.
-SCONCE_FN int b0NearestCorner(vec3 p, ivec3 cell)
-{
-    vec3 g = (p - vec3(field.gridOrigin)) / vec3(field.gridStep) - vec3(real(cell.x), real(cell.y), real(cell.z));
-    return (g.x > real(0.5) ? 1 : 0) | (g.y > real(0.5) ? 2 : 0) | (g.z > real(0.5) ? 4 : 0);
-}
-
-SCONCE_FN uint b0ProbeIndex(ivec3 cell, int corner)
-{
-    uint x = min(uint(cell.x + (corner & 1)), field.gridX - 1u);
-    uint y = min(uint(cell.y + ((corner >> 1) & 1)), field.gridY - 1u);
-    uint z = min(uint(cell.z + (corner >> 2)), field.gridZ - 1u);
-    return x + field.gridX * (y + field.gridY * z);
-}
-
-/// One ray, field space, unit direction. Reads: distanceReads counts both levels.
-SCONCE_FN TraceResult b0TraceRay(vec3 origin, vec3 direction)
-{
-    TraceResult result;
-    result.status = kUnknown;
-    result.probe = kNoProbe;
-    result.face = -1;
-    result.pixel = vec2(real(0.0), real(0.0));
-    result.word = 0u;
-    result.handoffs = 0;
-    result.indexReads = 0;
-    B0Ray ray;
-    ray.direction = direction;
-    ray.reads = 0;
-    ray.tMin = real(0.0);
-    ray.t = real(0.0);
-    ray.pixel = vec2(real(0.0), real(0.0));
-    ray.word = 0u;
-    real tMax = fieldExit(origin, direction);
-    ivec3 cell = b0Cell(origin);
-    int corner = b0NearestCorner(origin, cell);
-    int tries = 0;
-    for (int i = 0; i < kB0Limit && tries < kB0Tries; ++i)
-    {
-        ray.probe = b0ProbeIndex(cell, corner);
-        ray.relative = origin - vec3(probeHeader(ray.probe).centre);
-        result.probe = ray.probe;
-        result.handoffs = i;
-        result.status = ray.tMin < tMax ? b0Probe(ray, tMax) : kMiss;
-        if (result.status != kUnknown) break;
-        ++tries;
-        vec3 at = origin + ray.tMin * direction;
-        ivec3 now = b0Cell(at);
-        if (now.x != cell.x || now.y != cell.y || now.z != cell.z)
-        {
-            cell = now;
-            corner = b0NearestCorner(at, cell);
-            tries = 0;
-        }
-        else corner = (corner + 3) & 7;
-    }
-    result.t = result.status == kHit ? ray.t : (result.status == kMiss ? tMax : ray.tMin);
-    if (result.status != kMiss && ray.word != 0u) // unknown: the last occluder seen, which the paper takes as hit
-    {
-        result.face = 0;
-        result.pixel = ray.pixel;
-        result.word = ray.word;
-    }
-    result.distanceReads = ray.reads;
-    return result;
-}
-
-/// Radiance of a hit: bilinear at the hit pixel, as the supplement of the paper reads it.
-SCONCE_FN vec3 b0Radiance(SCONCE_IN(TraceResult) hit)
-{
-    int n = int(field.faceSize);
-    real x = clamp(hit.pixel.x - real(0.5), real(0.0), real(n) - real(1.001));
-    real y = clamp(hit.pixel.y - real(0.5), real(0.0), real(n) - real(1.001));
-    int x0 = int(x), y0 = int(y);
-    real fx = x - real(x0), fy = y - real(y0);
-    uint first = (hit.probe * field.faceSize + uint(y0)) * field.faceSize + uint(x0);
-    return (real(1.0) - fy) * ((real(1.0) - fx) * unpackRadiance(radianceWord(first)) + fx * unpackRadiance(radianceWord(first + 1u))) +
-           fy * ((real(1.0) - fx) * unpackRadiance(radianceWord(first + uint(n))) + fx * unpackRadiance(radianceWord(first + uint(n) + 1u)));
+    cut.t[0] = ray.tMin;
+    cut.t[4] = tMax;
+    real low = min(cut.t[1], cut.t[2]), high = max(cut.t[1], cut.t[2]);
+    cut.t[1] = min(low, cut.t[3]);
+    real middle = max(low, cut.t[3]);
+    cut.t[2] = min(middle, high);
+    cut.t[3] = max(middle, high);
+    return cut;
 }

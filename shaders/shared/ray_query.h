@@ -40,17 +40,3 @@ SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction)
 {
     return answerOf(origin, direction, traceRay((origin - vec3(field.origin)) / real(field.scale), direction));
 }
-
-/// The same with baseline B0+.
-SCONCE_FN RayHit b0QueryRay(vec3 origin, vec3 direction)
-{
-    TraceResult r = b0TraceRay((origin - vec3(field.origin)) / real(field.scale), direction);
-    vec3 normal = vec3(real(0.0));
-    vec3 radiance = vec3(real(0.0));
-    if (r.face >= 0)
-    {
-        normal = unpackNormal8(r.word >> 16);
-        radiance = b0Radiance(r);
-    }
-    return answer(origin, direction, r, normal, radiance);
-}

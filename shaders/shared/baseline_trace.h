@@ -1,0 +1,248 @@
+// The opponents' loop over probes: from a ray to its result. kBaseline (shared/baseline.h) says whose.
+//   B0       the supplement's: the eight corners of the grid cell of the origin, +3 mod 8, indices that wrap at the far borders
+//   B0+      the paper's re-pick of the cell as the ray proceeds, borders clamped
+//   others   the ranked list of the octree's leaf at the point reached, and when that is used up those a little further on; probes tried
+//            without progress are left out. Wang et al. keep their index in a sparse voxel octree of at most four probes a voxel; ours
+//            (svo/octree.h), which does the same in fewer bytes, stands in for it. A probe lost by a back face asks again at that point.
+// Shared text, see baseline_b0.h; needs rankedProbesAt, radianceWord.
+
+SCONCE_CONST bool kFromOctree = kBaseline == kBaselineB0PlusOctree || kBaseline == kBaselineWang;
+SCONCE_CONST int kB0Tries = 8;        // probes of a cell
+SCONCE_CONST int kBaselineLimit = 64; // probes of a ray, over all cells
+SCONCE_CONST int kListLimit = 25;     // the same of one whose probes come from lists
+SCONCE_CONST int kListTried = 12;     // probes remembered as tried without progress
+
+struct BaselineChoice
+{
+    uint probe;
+    // grid
+    ivec3 cell;
+    int corner;
+    int tries;
+    // lists
+    uint tried[kListTried];
+    int triedCount;
+    real tClear; // t at which the tried set was last cleared
+    int indexReads;
+};
+
+SCONCE_FN uint baselineProbe(SCONCE_INOUT(B0Ray) ray, real tMax)
+{
+    B0Octants cut = b0Octants(ray, tMax);
+    bool stopped = false;
+    for (int i = 0; i < 4 && !stopped; ++i)
+    {
+        if (cut.t[i + 1] - cut.t[i] < real(0.001) / real(field.scale)) continue;
+        B0Line line = b0Project(ray, cut.t[i], cut.t[i + 1]);
+        if (kBaseline == kBaselineWang) stopped = wangSegment(ray, line);
+        else if (kPublished) stopped = b0SegmentPublished(ray, line);
+        else stopped = b0SegmentExact(ray, line);
+    }
+    return stopped ? b0Resolve(ray) : kMiss;
+}
+
+SCONCE_FN vec3 b0GridPoint(vec3 p) { return (p - vec3(field.gridOrigin)) / vec3(field.gridStep); }
+
+SCONCE_FN ivec3 b0Cell(vec3 p)
+{
+    vec3 g = b0GridPoint(p);
+    return ivec3(int(clamp(floor(g.x), real(0.0), real(field.gridX - 1u))), int(clamp(floor(g.y), real(0.0), real(field.gridY - 1u))),
+                 int(clamp(floor(g.z), real(0.0), real(field.gridZ - 1u))));
+}
+
+/// Corner of the cell whose probe is nearest to the point in grid units, bits xyz; corners beyond the grid are those within it.
+SCONCE_FN int b0NearestCorner(vec3 p, ivec3 cell)
+{
+    vec3 g = b0GridPoint(p) - vec3(real(cell.x), real(cell.y), real(cell.z));
+    return (g.x > real(0.5) && cell.x + 1 < int(field.gridX) ? 1 : 0) | (g.y > real(0.5) && cell.y + 1 < int(field.gridY) ? 2 : 0) |
+           (g.z > real(0.5) && cell.z + 1 < int(field.gridZ) ? 4 : 0);
+}
+
+SCONCE_FN uint b0ProbeIndex(ivec3 cell, int corner)
+{
+    uint x = uint(cell.x + (corner & 1));
+    uint y = uint(cell.y + ((corner >> 1) & 1));
+    uint z = uint(cell.z + (corner >> 2));
+    if (kPublished) return (x + field.gridX * (y + field.gridY * z)) & (field.probeCount - 1u); // counts are powers of two
+    x = min(x, field.gridX - 1u);
+    y = min(y, field.gridY - 1u);
+    z = min(z, field.gridZ - 1u);
+    return x + field.gridX * (y + field.gridY * z);
+}
+
+SCONCE_FN BaselineChoice beginChoice(vec3 origin)
+{
+    BaselineChoice c;
+    c.probe = kNoProbe;
+    c.cell = ivec3(0, 0, 0);
+    c.corner = 0;
+    c.tries = 0;
+    c.triedCount = 0;
+    c.tClear = real(0.0);
+    c.indexReads = 0;
+    if (!kFromOctree)
+    {
+        c.cell = b0Cell(origin);
+        c.corner = b0NearestCorner(origin, c.cell);
+        c.probe = b0ProbeIndex(c.cell, c.corner);
+    }
+    return c;
+}
+
+/// The grid's next probe once the last one lost the ray at `at`. False: all eight of the cell were asked.
+SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at)
+{
+    ++c.tries;
+    bool moved = false;
+    if (!kPublished)
+    {
+        ivec3 now = b0Cell(at);
+        moved = now.x != c.cell.x || now.y != c.cell.y || now.z != c.cell.z;
+        if (moved)
+        {
+            c.cell = now;
+            c.corner = b0NearestCorner(at, now);
+            c.tries = 0;
+        }
+    }
+    if (!moved) c.corner = (c.corner + 3) & 7;
+    c.probe = b0ProbeIndex(c.cell, c.corner);
+    return c.tries < kB0Tries;
+}
+
+/// The lists' best probe not yet tried at t. False: there is none.
+SCONCE_FN bool nextOfLists(SCONCE_INOUT(BaselineChoice) c, vec3 origin, vec3 direction, real t)
+{
+    if (t > c.tClear + real(1e-4) * real(field.diagonal) && c.triedCount > 0)
+    {
+        c.tried[0] = c.tried[c.triedCount - 1];
+        c.triedCount = 1;
+        c.tClear = t;
+    }
+    for (int list = 0; list < 3; ++list)
+    {
+        real ahead = list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75));
+        uvec4 ranked = rankedProbesAt(origin + (t + ahead * real(field.voxel)) * direction, c.indexReads);
+        for (int k = 0; k < kRanked; ++k)
+        {
+            bool known = false;
+            for (int i = 0; i < c.triedCount; ++i) known = known || c.tried[i] == ranked[k];
+            if (known) continue;
+            if (c.triedCount >= kListTried) return false;
+            c.probe = ranked[k];
+            c.tried[c.triedCount] = c.probe;
+            ++c.triedCount;
+            return true;
+        }
+    }
+    return false;
+}
+
+/// One ray, field space, unit direction. distanceReads counts all levels of the maps.
+SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
+{
+    // the supplement's rays start a millimetre further on
+    real ahead = kPublished ? real(0.001) / real(field.scale) : real(0.0);
+    vec3 origin = from + ahead * direction;
+    TraceResult result;
+    result.status = kUnknown;
+    result.probe = kNoProbe;
+    result.face = -1;
+    result.pixel = vec2(real(0.0), real(0.0));
+    result.word = 0u;
+    result.handoffs = 0;
+    B0Ray ray;
+    ray.direction = direction;
+    ray.reads = 0;
+    ray.tMin = real(0.0);
+    ray.t = real(0.0);
+    ray.pixel = result.pixel;
+    ray.word = 0u;
+    ray.certain = false;
+    ray.nearest = real(0.0);
+    ray.before = origin;
+    real tMax = kPublished ? real(10000.0) / real(field.scale) : fieldExit(origin, direction);
+    BaselineChoice choice = beginChoice(origin);
+    uint seenBy = kNoProbe; // probe of the last texel that stopped the march
+    bool asked = kFromOctree ? nextOfLists(choice, origin, direction, ray.tMin) : true;
+    for (int i = 0; i < (kFromOctree ? kListLimit : kBaselineLimit) && asked; ++i)
+    {
+        ray.probe = choice.probe;
+        ray.relative = origin - vec3(probeHeader(ray.probe).centre);
+        result.probe = ray.probe;
+        result.handoffs = i;
+        result.status = ray.tMin < tMax ? baselineProbe(ray, tMax) : kMiss;
+        if (result.status == kMiss) break;
+        if (!ray.certain) seenBy = ray.probe;
+        if (result.status == kHit) break;
+        if (kFromOctree) asked = nextOfLists(choice, origin, direction, ray.tMin);
+        else asked = nextOfGrid(choice, origin + ray.tMin * direction);
+    }
+    result.t = ahead + (result.status == kHit ? ray.t : (result.status == kMiss ? tMax : ray.tMin));
+    if (result.status != kMiss && seenBy != kNoProbe) // unknown: the last occluder seen, which the paper takes as hit
+    {
+        result.probe = seenBy;
+        result.face = 0;
+        result.pixel = ray.pixel;
+        result.word = ray.word;
+    }
+    if (kPublished && result.status != kHit)
+    {
+        // The supplement fills what was not hit, sky included, with what the grid point nearest to the origin sees in that direction.
+        vec3 g = b0GridPoint(origin);
+        ivec3 nearest = ivec3(int(clamp(floor(g.x + real(0.5)), real(0.0), real(field.gridX - 1u))),
+                              int(clamp(floor(g.y + real(0.5)), real(0.0), real(field.gridY - 1u))),
+                              int(clamp(floor(g.z + real(0.5)), real(0.0), real(field.gridZ - 1u))));
+        result.probe = b0ProbeIndex(nearest, 0);
+        result.face = 0;
+        result.pixel = octahedralFromDirection(direction) * real(field.faceSize);
+        result.word = 0u;
+    }
+    result.distanceReads = ray.reads;
+    result.indexReads = choice.indexReads;
+    return result;
+}
+
+/// Bilinear at the pixel, as the supplement reads it.
+SCONCE_FN vec3 baselineRadiance(SCONCE_IN(TraceResult) hit)
+{
+    int n = int(field.faceSize);
+    real x = hit.pixel.x - real(0.5), y = hit.pixel.y - real(0.5);
+    int x0 = min(max(int(floor(x)), 0), n - 2);
+    int y0 = min(max(int(floor(y)), 0), n - 2);
+    real fx = clamp(x - real(x0), real(0.0), real(1.0));
+    real fy = clamp(y - real(y0), real(0.0), real(1.0));
+    uint first = (hit.probe * field.faceSize + uint(y0)) * field.faceSize + uint(x0);
+    return (real(1.0) - fy) * ((real(1.0) - fx) * unpackRadiance(radianceWord(first)) + fx * unpackRadiance(radianceWord(first + 1u))) +
+           fy * ((real(1.0) - fx) * unpackRadiance(radianceWord(first + uint(n))) + fx * unpackRadiance(radianceWord(first + uint(n) + 1u)));
+}
+
+/// A world-space ray through the light field with the opponent. One that is not finite, or has no unit direction, is a MISS at t = 0.
+SCONCE_FN RayHit baselineQuery(vec3 origin, vec3 direction)
+{
+    TraceResult r;
+    real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
+    if (!(sum < real(1e18)) || !(abs(dot(direction, direction) - real(1.0)) < real(1e-3)))
+    {
+        r.status = kMiss;
+        r.t = real(0.0);
+        r.probe = kNoProbe;
+        r.face = -1;
+        r.pixel = vec2(real(0.0), real(0.0));
+        r.word = 0u;
+        r.handoffs = 0;
+        r.distanceReads = 0;
+        r.indexReads = 0;
+    }
+    else r = baselineTrace((origin - vec3(field.origin)) / real(field.scale), direction);
+    vec3 normal = vec3(real(0.0));
+    vec3 radiance = vec3(real(0.0));
+    if (r.face >= 0)
+    {
+        if (r.word != 0u) normal = unpackNormal8(r.word >> 16);
+        radiance = baselineRadiance(r);
+    }
+    RayHit hit = answer(origin, direction, r, normal, radiance);
+    if (kPublished && r.face >= 0) hit.radiance = vec3f(radiance); // the fill-in stands for the sky, too
+    return hit;
+}
