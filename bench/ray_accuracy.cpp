@@ -1,29 +1,24 @@
-// How right a tracer is: the same glossy rays through one or more baked light fields, against Embree.
-//   sconce_ray_accuracy SCENE --field ours.sconce --field grid.sconce [--rays N] [--seed N] [--cpu] [--json]
-// A field of the octahedral chart on a grid is traced by baseline B0+, whose rays start a further centimetre off their surface; every
-// other one by our tracer. Rays leave surfaces that the scene's cameras and points of the reachable space see, GGX alpha 0.1 to 0.3.
+// How right and how fast tracers are: the same glossy rays through baked light fields, against Embree.
+//   sconce_ray_accuracy SCENE --field [TRACER=]FILE... [--rays N] [--seed N] [--runs N] [--cpu] [--json]
+// TRACER: ours, b0, b0plus, b0plus-octree, wang (bench/baselines.h); left out, the field tells. Rays leave surfaces that the scene's
+// cameras and points of the reachable space see, GGX alpha 0.1 to 0.3. With --runs, times: the tracers take turns, so that whatever else
+// the machine does falls on all of them, and every turn traces the rays once in the order of the pictures and once shuffled.
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <numeric>
-#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bench/baselines.h"
-#include "bench/ray_sets.h"
+#include "bench/traced_method.h"
 #include "placement/free_space.h"
 #include "placement/random.h"
 #include "placement/visibility.h"
-#include "runtime/light_field.h"
-#include "runtime/light_field_file.h"
-#include "runtime/quality.h"
-#include "runtime/tracer_cpu.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
-#include "svo/parallel.h"
 
 namespace sconce
 {
@@ -31,24 +26,32 @@ namespace
 {
 
 constexpr size_t kLeastViewpoints = 8; // cameras and interior points the rays' surfaces are seen from
+constexpr size_t kLeastInterior = 6;   // of them in the reachable space
+constexpr size_t kMostTimedRays = size_t(1) << 18;
 
 struct Options
 {
     std::string scene;
     std::vector<std::string> fields;
     uint32_t rays = 100000;
+    uint32_t runs = 0;
     uint64_t seed = 1;
     bool cpu = false;
     bool json = false;
 };
 
+struct Speed // of one row, over the runs
+{
+    std::vector<double> ordered, shuffled; // milliseconds
+};
+
 struct Row
 {
-    std::string field, tracer;
-    uint32_t probes = 0;
+    std::string name, file;
+    const TracedMethod* method = nullptr; // null: Embree
     TraceScore score;
-    double milliseconds = 0.0;
     std::optional<size_t> cpuDiffers; // rays that the CPU's run of the same text answers otherwise
+    Speed speed;
 };
 
 Result<RaySet> makeRays(const Scene& scene, const RayScene& truth, const Options& options)
@@ -57,9 +60,12 @@ Result<RaySet> makeRays(const Scene& scene, const RayScene& truth, const Options
     if (!visibility) return visibility.error();
     auto space = findFreeSpace(scene, *visibility, {});
     if (!space) return space.error();
+    const auto interior = size_t(std::ranges::count_if(scene.cameras, [&](const Camera& camera) { return space->contains(camera.eye); }));
+    const size_t wanted =
+        std::max(kLeastViewpoints - std::min(kLeastViewpoints, scene.cameras.size()), kLeastInterior - std::min(kLeastInterior, interior));
     RandomStream random(options.seed, 77);
     std::vector<vec3> points;
-    while (points.size() + scene.cameras.size() < kLeastViewpoints) points.push_back(space->randomPoint(random));
+    while (points.size() < wanted) points.push_back(space->randomPoint(random));
     return glossyRays(truth, scene.cameras, points, {.count = options.rays, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = options.seed});
 }
 
@@ -70,78 +76,167 @@ bool same(const gpu::RayHit& a, const gpu::RayHit& b)
            a.indexReads == b.indexReads && std::abs(a.t - b.t) <= 2e-5f * std::abs(b.t);
 }
 
-size_t countDifferences(const FieldData& field, bool baseline, std::span<const gpu::Ray> rays, std::span<const gpu::RayHit> hits)
+Result<Row> score(TracedMethod& method, const RaySet& set, bool cpu)
 {
-    constexpr size_t kBatch = 1024;
-    std::vector<size_t> differ((rays.size() + kBatch - 1) / kBatch);
-    parallelFor(differ.size(),
-                [&](size_t batch)
-                {
-                    twin::LightFieldTwin<float> text(field, Quality{}.trace);
-                    for (size_t i = batch * kBatch; i < std::min(rays.size(), (batch + 1) * kBatch); ++i)
-                    {
-                        const gpu::RayHit cpu = baseline ? text.b0QueryRay(rays[i].origin, rays[i].direction)
-                                                         : text.queryRay(rays[i].origin, rays[i].direction);
-                        differ[batch] += !same(hits[i], cpu);
-                    }
-                });
-    return std::accumulate(differ.begin(), differ.end(), size_t(0));
-}
-
-Result<Row> measure(Gpu& gpu, const RaySet& set, const std::string& file, bool cpu)
-{
-    auto data = loadField(file);
-    if (!data) return data.error();
-    const bool baseline = data->info.chart == gpu::kChartOctahedral;
-    auto field = LightField::create(gpu, *data);
-    if (!field) return field.error();
-    auto tracer = RayTracer::create(gpu, *field, baseline ? traceRaysB0Plus() : Spirv());
-    if (!tracer) return tracer.error();
-    std::vector<gpu::Ray> rays(set.size());
-    for (size_t i = 0; i < rays.size(); ++i)
-        rays[i] = {set.origins[i] + (baseline ? kB0PlusOffset * set.normals[i] : vec3(0.0f)), set.directions[i]};
+    Row row;
+    row.name = method.name();
+    row.file = std::filesystem::path(method.file()).filename();
+    row.method = &method;
+    const std::vector<gpu::Ray> rays = method.raysOf(set);
     std::vector<gpu::RayHit> hits(rays.size());
-    Row row{file, baseline ? "b0plus" : "ours", data->info.probeCount, {}, 0.0, {}};
-    if (auto status = tracer->trace(rays, hits); !status) return status.error(); // the first run compiles the pass
-    if (auto status = tracer->trace(rays, hits, &row.milliseconds); !status) return status.error();
-    std::vector<TracedRay> traced(hits.size());
-    for (size_t i = 0; i < hits.size(); ++i)
-        traced[i] = {TraceStatus(hits[i].status), hits[i].t, uint32_t(hits[i].handoffs), uint32_t(hits[i].distanceReads),
-                     uint32_t(hits[i].indexReads)};
+    if (auto status = method.trace(rays, hits); !status) return status.error();
+    std::vector<TracedRay> traced;
+    traced.reserve(hits.size());
+    for (const gpu::RayHit& hit : hits)
+        traced.push_back({TraceStatus(hit.status), hit.t, uint32_t(hit.handoffs), uint32_t(hit.distanceReads), uint32_t(hit.indexReads)});
     row.score = scoreTraces(set, traced);
-    if (cpu) row.cpuDiffers = countDifferences(*data, baseline, rays, hits);
+    if (!cpu) return row;
+    std::vector<gpu::RayHit> again(rays.size());
+    method.traceOnCpu(rays, again);
+    row.cpuDiffers = 0;
+    for (size_t i = 0; i < hits.size(); ++i) *row.cpuDiffers += !same(hits[i], again[i]);
     return row;
 }
 
-nlohmann::ordered_json toJson(const Row& row)
+/// The rays that are timed: all, or evenly many of them.
+RaySet timedRays(const RaySet& set)
+{
+    RaySet some;
+    const size_t count = std::min(set.size(), kMostTimedRays);
+    some.diagonal = set.diagonal;
+    for (size_t k = 0; k < count; ++k)
+    {
+        const size_t i = k * set.size() / count;
+        some.origins.push_back(set.origins[i]);
+        some.directions.push_back(set.directions[i]);
+        some.normals.push_back(set.normals[i]);
+    }
+    return some;
+}
+
+/// Embree's milliseconds over the same rays, the faster of one and eight rays a call.
+double timeEmbree(const RayScene& truth, const RaySet& rays, std::span<float> t)
+{
+    double best = std::numeric_limits<double>::infinity();
+    for (int width : {1, 8})
+    {
+        const auto begin = std::chrono::steady_clock::now();
+        truth.distances(rays.origins, rays.directions, width, t);
+        best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return best;
+}
+
+/// Fills the rows' speeds and appends Embree's.
+Status timeAll(std::vector<Row>& rows, std::span<const std::unique_ptr<TracedMethod>> methods, const RayScene& truth, const RaySet& set,
+               const Options& options)
+{
+    const RaySet rays = timedRays(set);
+    const std::vector<uint32_t> order = shuffledOrder(rays.size(), options.seed);
+    RaySet shuffled;
+    for (uint32_t i : order)
+    {
+        shuffled.origins.push_back(rays.origins[i]);
+        shuffled.directions.push_back(rays.directions[i]);
+    }
+    for (const auto& method : methods)
+        if (auto status = method->prepare(method->raysOf(rays), order); !status) return status;
+    Row embree;
+    embree.name = "embree";
+    std::vector<float> t(rays.size());
+    for (uint32_t run = 0; run <= options.runs; ++run) // the first one warms up
+    {
+        for (size_t m = 0; m < methods.size(); ++m)
+            for (bool ordered : {true, false})
+            {
+                const auto milliseconds = methods[m]->time(ordered);
+                if (!milliseconds) return milliseconds.error();
+                if (run > 0) (ordered ? rows[m].speed.ordered : rows[m].speed.shuffled).push_back(*milliseconds);
+            }
+        const double ordered = timeEmbree(truth, rays, t), mixed = timeEmbree(truth, shuffled, t);
+        if (run == 0) continue;
+        embree.speed.ordered.push_back(ordered);
+        embree.speed.shuffled.push_back(mixed);
+    }
+    embree.score.rays = rays.size();
+    rows.push_back(std::move(embree));
+    return success();
+}
+
+nlohmann::ordered_json toJson(const Row& row, size_t timed)
 {
     const TraceScore& s = row.score;
-    nlohmann::ordered_json json = {
-        {"field", row.field},
-        {"tracer", row.tracer},
-        {"probes", row.probes},
-        {"rays", s.rays},
-        {"right_1", s.right1},
-        {"right_02", s.right02},
-        {"false", s.falseHit},
-        {"leak", s.leak},
-        {"unresolved", s.unresolved},
-        {"distance_reads", {{"mean", s.distanceReads.mean}, {"p95", s.distanceReads.p95}, {"max", s.distanceReads.max}}},
-        {"index_reads_mean", s.indexReads.mean},
-        {"handoffs_mean", s.handoffs.mean},
-        {"trace_ms", row.milliseconds}};
-    if (row.cpuDiffers) json["cpu_differs"] = *row.cpuDiffers;
+    nlohmann::ordered_json json = {{"tracer", row.name}};
+    if (row.method)
+    {
+        json.update({{"field", row.file},
+                     {"probes", row.method->data().info.probeCount},
+                     {"chart", row.method->data().info.chart == gpu::kChartCube ? "cube" : "octahedral"},
+                     {"face_size", row.method->data().info.faceSize},
+                     {"trace_mib", row.method->traceMebibytes()},
+                     {"radiance_mib", row.method->radianceMebibytes()},
+                     {"rays", s.rays},
+                     {"right_1", s.right1},
+                     {"right_02", s.right02},
+                     {"false", s.falseHit},
+                     {"leak", s.leak},
+                     {"unresolved", s.unresolved},
+                     {"distance_reads", {{"mean", s.distanceReads.mean}, {"p95", s.distanceReads.p95}, {"max", s.distanceReads.max}}},
+                     {"index_reads_mean", s.indexReads.mean},
+                     {"handoffs_mean", s.handoffs.mean}});
+        if (row.cpuDiffers) json["cpu_differs"] = *row.cpuDiffers;
+    }
+    const auto add = [&](const char* name, const std::vector<double>& runs)
+    {
+        if (runs.empty()) return;
+        const Times times = timesOf(runs);
+        json[name] = {{"median", times.median}, {"p5", times.p5}, {"p95", times.p95}, {"mrays_per_s", double(timed) / times.median / 1e3}};
+    };
+    add("coherent_ms", row.speed.ordered);
+    add("incoherent_ms", row.speed.shuffled);
     return json;
 }
 
-void print(const Row& row)
+void printScores(std::span<const Row> rows, size_t rays, const std::string& device)
 {
-    const TraceScore& s = row.score;
-    std::printf("%-7s %6u  %6.2f %6.2f  %5.2f %5.2f %5.2f  %6.1f %5u %6u  %5.1f  %5.2f  %9.0f  %s\n", row.tracer.c_str(), row.probes,
-                100 * s.right1, 100 * s.right02, 100 * s.falseHit, 100 * s.leak, 100 * s.unresolved, s.distanceReads.mean,
-                s.distanceReads.p95, s.distanceReads.max, s.indexReads.mean, s.handoffs.mean, row.milliseconds,
-                std::filesystem::path(row.field).filename().c_str());
-    if (row.cpuDiffers) std::printf("        the CPU answers %zu of these %zu rays otherwise\n", *row.cpuDiffers, s.rays);
+    std::printf("%zu rays, %s; per cent right within 1 %% and 0.2 %% of the diagonal, false, leak, unresolved; reads a ray mean, p95, max; "
+                "MiB a probe that the trace reads, with radiance\n"
+                "tracer           probes     1 %%  0.2 %%  false  leak unres    mean   p95    max  index  hands   MiB  +rad  field\n",
+                rays, device.c_str());
+    for (const Row& row : rows)
+    {
+        if (!row.method) continue;
+        const TraceScore& s = row.score;
+        std::printf("%-16s %6u  %6.2f %6.2f  %5.2f %5.2f %5.2f  %6.1f %5u %6u  %5.1f  %5.2f  %4.2f  %4.2f  %s\n", row.name.c_str(),
+                    row.method->data().info.probeCount, 100 * s.right1, 100 * s.right02, 100 * s.falseHit, 100 * s.leak, 100 * s.unresolved,
+                    s.distanceReads.mean, s.distanceReads.p95, s.distanceReads.max, s.indexReads.mean, s.handoffs.mean,
+                    row.method->traceMebibytes(), row.method->traceMebibytes() + row.method->radianceMebibytes(), row.file.c_str());
+        if (row.cpuDiffers) std::printf("        the CPU answers %zu of these %zu rays otherwise\n", *row.cpuDiffers, s.rays);
+    }
+}
+
+void printTimes(std::span<const Row> rows, size_t rays, uint32_t runs)
+{
+    const Row* yardstick = nullptr; // B0+ with its probes from the octree: the tracer whose time ours is measured against
+    for (const Row& row : rows)
+        if (!yardstick && row.method && row.method->baseline() == Baseline::b0PlusOctree) yardstick = &row;
+    std::printf("\n%zu rays, %u runs that take turns: milliseconds median (5th to 95th percentile), million rays a second%s\n"
+                "tracer                         coherent  Mrays/s  ratio                    shuffled  Mrays/s  ratio  field\n",
+                rays, runs, yardstick ? ", ratio of the medians to b0plus-octree" : "");
+    for (const Row& row : rows)
+    {
+        std::printf("%-16s", row.name.c_str());
+        for (const auto part : {&Speed::ordered, &Speed::shuffled})
+        {
+            const Times times = timesOf(row.speed.*part);
+            std::printf("  %6.0f (%5.0f to %5.0f)  %7.3f", times.median, times.p5, times.p95, double(rays) / times.median / 1e3);
+            if (yardstick)
+                std::printf("  %5.2f", times.median / timesOf(yardstick->speed.*part).median);
+            else
+                std::printf("      -");
+        }
+        std::printf("  %s\n", row.method ? row.file.c_str() : "2 threads or as many as there are cores, the faster of 1 and 8 rays a call");
+    }
 }
 
 Status run(const Options& options)
@@ -156,22 +251,30 @@ Status run(const Options& options)
     if (!device) return device.error();
     auto gpu = Gpu::create(device->host());
     if (!gpu) return gpu.error();
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    if (!options.json)
-        std::printf(
-            "%zu rays, %s; per cent right within 1 %% and 0.2 %% of the diagonal, false, leak, unresolved; reads a ray mean, p95, max\n"
-            "tracer  probes     1 %%  0.2 %%  false  leak unres    mean   p95    max  index  hands   trace ms  field\n",
-            set->size(), device->name().c_str());
-    for (const std::string& file : options.fields)
+    std::vector<std::unique_ptr<TracedMethod>> methods;
+    std::vector<Row> rows;
+    for (const std::string& field : options.fields)
     {
-        auto row = measure(**gpu, *set, file, options.cpu);
+        auto method = TracedMethod::create(**gpu, field);
+        if (!method) return method.error();
+        methods.push_back(std::move(*method));
+        auto row = score(*methods.back(), *set, options.cpu);
         if (!row) return row.error();
-        if (options.json)
-            json.push_back(toJson(*row));
-        else
-            print(*row);
+        rows.push_back(std::move(*row));
     }
-    if (options.json) std::cout << json.dump(2) << std::endl;
+    if (!options.json) printScores(rows, set->size(), device->name());
+    const size_t timed = std::min(set->size(), kMostTimedRays);
+    if (options.runs > 0)
+    {
+        if (auto status = timeAll(rows, methods, *truth, *set, options); !status) return status;
+        if (!options.json) printTimes(rows, timed, options.runs);
+    }
+    if (options.json)
+    {
+        nlohmann::ordered_json json = nlohmann::ordered_json::array();
+        for (const Row& row : rows) json.push_back(toJson(row, timed));
+        std::cout << json.dump(2) << std::endl;
+    }
     return success();
 }
 
@@ -180,17 +283,33 @@ Status run(const Options& options)
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"Accuracy of light field tracers on glossy rays, against Embree"};
+    CLI::App app{"Accuracy and speed of light field tracers on glossy rays, against Embree"};
     sconce::Options options;
     app.add_option("SCENE", options.scene, ".gltf, .glb or built-in name")->required();
-    app.add_option("--field", options.fields, "baked light field; repeatable")->required();
+    app.add_option("--field", options.fields,
+                   "[TRACER=]FILE, a baked light field and what traces it: ours, b0, b0plus, b0plus-octree or wang; b0plus/8 gives the low "
+                   "factor (default: b0plus for octahedral maps on a grid, b0plus-octree for others, else ours); repeatable")
+        ->required();
     app.add_option("--rays", options.rays, "rays (default: 100000; range: 1 to 10000000)")->check(CLI::Range(1u, 10000000u));
-    app.add_option("--seed", options.seed, "seed of the rays (default: 1)");
+    app.add_option("--runs", options.runs,
+                   "timed runs over the rays, at most 262144 of them; 0 takes no times (default: 0; range: 0 to 1000)")
+        ->check(CLI::Range(0u, 1000u));
+    app.add_option("--seed", options.seed, "seed of the rays and of their shuffling (default: 1)");
     app.add_flag("--cpu", options.cpu, "trace the same rays on the CPU, too, and count the answers that differ");
     app.add_flag("--json", options.json, "machine-readable results");
     CLI11_PARSE(app, argc, argv);
     const sconce::Status status = sconce::run(options);
     if (status) return 0;
     std::fprintf(stderr, "%s\n", status.error().message.c_str());
-    return status.error().code == sconce::ErrorCode::badInput ? 3 : (status.error().code == sconce::ErrorCode::fileError ? 5 : 4);
+    switch (status.error().code)
+    {
+    case sconce::ErrorCode::badArgument:
+        return 2;
+    case sconce::ErrorCode::badInput:
+        return 3;
+    case sconce::ErrorCode::fileError:
+        return 5;
+    default:
+        return 4;
+    }
 }

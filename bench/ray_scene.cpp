@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
 #include <embree3/rtcore.h>
+
+#include "svo/parallel.h"
 
 namespace sconce
 {
@@ -172,6 +175,47 @@ bool RayScene::occluded(vec3 origin, vec3 direction, float tFar) const
     rtcInitIntersectContext(&context);
     rtcOccluded1(impl->rtc, &context, &ray);
     return ray.tfar < 0.0f; // Embree sets it to -infinity on a hit
+}
+
+void RayScene::distances(std::span<const vec3> origins, std::span<const vec3> directions, int width, std::span<float> t) const
+{
+    assert(origins.size() == directions.size() && origins.size() == t.size() && (width == 1 || width == 8));
+    constexpr size_t kBatch = 1024;
+    parallelFor((t.size() + kBatch - 1) / kBatch,
+                [&](size_t batch)
+                {
+                    RTCIntersectContext context;
+                    rtcInitIntersectContext(&context);
+                    const size_t end = std::min(t.size(), (batch + 1) * kBatch);
+                    for (size_t first = batch * kBatch; first < end; first += size_t(width))
+                    {
+                        if (width == 1)
+                        {
+                            RTCRayHit one{};
+                            one.ray = makeRay(origins[first], directions[first], std::numeric_limits<float>::infinity());
+                            one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+                            rtcIntersect1(impl->rtc, &context, &one);
+                            t[first] = one.ray.tfar;
+                            continue;
+                        }
+                        RTCRayHit8 eight{};
+                        alignas(32) int valid[8];
+                        for (size_t lane = 0; lane < 8; ++lane)
+                        {
+                            valid[lane] = first + lane < end ? -1 : 0;
+                            const size_t i = std::min(first + lane, end - 1);
+                            eight.ray.org_x[lane] = origins[i].x, eight.ray.org_y[lane] = origins[i].y,
+                            eight.ray.org_z[lane] = origins[i].z;
+                            eight.ray.dir_x[lane] = directions[i].x, eight.ray.dir_y[lane] = directions[i].y,
+                            eight.ray.dir_z[lane] = directions[i].z;
+                            eight.ray.tfar[lane] = std::numeric_limits<float>::infinity();
+                            eight.ray.mask[lane] = ~0u;
+                            eight.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+                        }
+                        rtcIntersect8(valid, impl->rtc, &context, &eight);
+                        for (size_t lane = 0; first + lane < std::min(end, first + 8); ++lane) t[first + lane] = eight.ray.tfar[lane];
+                    }
+                });
 }
 
 const Scene& RayScene::scene() const

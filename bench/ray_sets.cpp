@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include <tbb/parallel_for.h>
@@ -22,7 +23,17 @@ struct Ray
 {
     vec3 origin;
     vec3 direction;
+    uint64_t place; // in the order of the viewpoints' pictures
 };
+
+/// The place of a point of the unit square along the Z-order curve of 2^16 x 2^16 cells.
+uint64_t zOrder(vec2 u)
+{
+    uint64_t code = 0;
+    const auto x = static_cast<uint64_t>(u.x * 65536.0f), y = static_cast<uint64_t>(u.y * 65536.0f);
+    for (int bit = 0; bit < 16; ++bit) code |= ((x >> bit & 1u) << (2 * bit)) | ((y >> bit & 1u) << (2 * bit + 1));
+    return code;
+}
 
 vec3 uniformDirection(vec2 u)
 {
@@ -35,12 +46,14 @@ Ray viewRay(std::span<const Camera> cameras, std::span<const vec3> points, Rando
 {
     const uint32_t pick = random.below(static_cast<uint32_t>(cameras.size() + points.size()));
     const vec2 u = random.uniform2();
-    if (pick >= cameras.size()) return {points[pick - cameras.size()], uniformDirection(u)};
+    const uint64_t place = static_cast<uint64_t>(pick) << 32 | zOrder(u);
+    if (pick >= cameras.size()) return {points[pick - cameras.size()], uniformDirection(u), place};
     const Camera& camera = cameras[pick];
     const float half = std::tan(0.5f * camera.verticalFov);
     const vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
     const vec3 up = glm::normalize(glm::cross(right, camera.forward));
-    return {camera.eye, glm::normalize(glm::normalize(camera.forward) + half * ((2.0f * u.x - 1.0f) * right + (2.0f * u.y - 1.0f) * up))};
+    return {camera.eye, glm::normalize(glm::normalize(camera.forward) + half * ((2.0f * u.x - 1.0f) * right + (2.0f * u.y - 1.0f) * up)),
+            place};
 }
 
 RayTruth truthOf(const RayScene& rays, vec3 origin, vec3 direction)
@@ -64,6 +77,26 @@ RaySet emptySet(const RayScene& rays, size_t count)
     return set;
 }
 
+template <class T> std::vector<T> inOrder(const std::vector<T>& values, std::span<const uint32_t> order)
+{
+    std::vector<T> sorted;
+    sorted.reserve(values.size());
+    for (uint32_t i : order) sorted.push_back(values[i]);
+    return sorted;
+}
+
+void sortByPlace(RaySet& set, const std::vector<uint64_t>& places)
+{
+    std::vector<uint32_t> order(places.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, [&](uint32_t i) { return places[i]; });
+    set.origins = inOrder(set.origins, order);
+    set.directions = inOrder(set.directions, order);
+    set.normals = inOrder(set.normals, order);
+    set.startCosine = inOrder(set.startCosine, order);
+    set.truth = inOrder(set.truth, order);
+}
+
 Spread spreadOf(std::vector<uint32_t> values)
 {
     if (values.empty()) return {};
@@ -85,6 +118,7 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
         return Error{ErrorCode::badArgument, "glossy rays' alpha range is " + std::to_string(settings.alphaLow) + " to " +
                                                  std::to_string(settings.alphaHigh) + "; choose 0.001 <= low <= high <= 1"};
     RaySet set = emptySet(rays, settings.count);
+    std::vector<uint64_t> places(settings.count);
     std::atomic<bool> blind{false};
     tbb::parallel_for(uint32_t(0), settings.count,
                       [&](uint32_t i)
@@ -108,6 +142,7 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
                               const vec3 direction = glm::normalize(2.0f * glm::dot(back, micro) * micro - back);
                               const float cosine = glm::dot(direction, geometric);
                               if (!(cosine > 0.0f) || !(glm::dot(direction, normal) > 0.0f)) continue;
+                              places[i] = view.place;
                               set.origins[i] = seen->position + 1e-4f * set.diagonal * geometric;
                               set.directions[i] = direction;
                               set.normals[i] = geometric;
@@ -120,6 +155,7 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
     if (blind.load())
         return Error{ErrorCode::badInput, "the viewpoints of scene '" + rays.scene().name + "' see no surface in " +
                                               std::to_string(kTries) + " tries; give a camera or point that looks at the scene"};
+    sortByPlace(set, places);
     return set;
 }
 

@@ -41,8 +41,9 @@ struct GlossyRaySettings
 };
 
 /// Reflection rays as glossy surfaces send them: from what random pixels of the cameras see (square pictures) and what random
-/// directions from the interior points see, reflected about a visible GGX normal around the shading normal. The same rays for the same
-/// seed and any number of threads. Errors: badArgument names the setting; badInput when no viewpoint sees a surface.
+/// directions from the interior points see, reflected about a visible GGX normal around the shading normal. In the order of the
+/// viewpoints' pictures, each along a Z-order curve: as coherent as a frame's rays. The same rays for the same seed and any number of
+/// threads. Errors: badArgument names the setting; badInput when no viewpoint sees a surface.
 Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras, std::span<const vec3> points,
                           const GlossyRaySettings& settings);
 

@@ -55,6 +55,6 @@ for scene in "${scenes[@]}"; do
     for tracer in ours b0plus; do
         step "$folder/compare_$tracer.json" "$sconce" compare "$folder/$tracer.exr" "$folder/reference.exr" -o "$folder/error_$tracer.png"
     done
-    step "$folder/rays.json" "$root/build/release/bench/sconce_ray_accuracy" "$scene" --field "$folder/ours.sconce" --field "$folder/grid.sconce"
+    step "$folder/rays.json" "$root/build/release/bench/sconce_ray_accuracy" "$scene" --field "$folder/ours.sconce" --field "$folder/grid.sconce" --runs "$frames"
     python3 bench/report/report.py "$folder" "$name" "$((SECONDS - began))"
 done

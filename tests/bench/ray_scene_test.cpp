@@ -61,5 +61,30 @@ TEST(RayScene, EmptySceneMisses)
     EXPECT_FALSE(rays->closest(vec3(0.0f), {0, 0, 1}).has_value());
 }
 
+// One at a time, eight at a time and one call a ray must tell one distance; 21 rays leave a call of eight part empty.
+TEST(RayScene, ManyRaysAtOnceAreTheSameRays)
+{
+    Scene scene;
+    scene.materials = {Material{}};
+    test::addQuad(scene, vec3(0.0f), {2, 0, 0}, {0, 0, 2}, 0);
+    const auto rays = RayScene::create(scene);
+    ASSERT_TRUE(rays.ok());
+    std::vector<vec3> origins, directions;
+    for (int i = 0; i < 21; ++i)
+    {
+        origins.emplace_back(0.0f, 1.0f, 0.0f);
+        directions.push_back(glm::normalize(vec3(0.2f * float(i) - 2.0f, -1.0f, 0.1f)));
+    }
+    std::vector<float> one(21), eight(21);
+    rays->distances(origins, directions, 1, one);
+    rays->distances(origins, directions, 8, eight);
+    for (int i = 0; i < 21; ++i)
+    {
+        const auto hit = rays->closest(origins[i], directions[i]);
+        EXPECT_EQ(one[i], hit ? hit->t : std::numeric_limits<float>::infinity());
+        EXPECT_NEAR(std::min(eight[i], 1e9f), std::min(one[i], 1e9f), 1e-5f);
+    }
+}
+
 } // namespace
 } // namespace sconce

@@ -55,6 +55,22 @@ TEST(GlossyRays, SameForOneAndTwoThreads)
     EXPECT_EQ(one->directions, two->directions);
 }
 
+// Neighbours in the list are neighbours in a picture: what the benches call coherent.
+TEST(GlossyRays, ComeInTheOrderOfTheirPictures)
+{
+    const Scene scene = room();
+    const auto rays = RayScene::create(scene);
+    const vec3 points[] = {{0.7f, 0.1f, 0.2f}, {-0.6f, 0.2f, 0.1f}};
+    const auto set = glossyRays(*rays, {}, points, {.count = 4000});
+    double apart = 0.0, far = 0.0;
+    for (size_t i = 1; i < set->size(); ++i)
+    {
+        apart += glm::distance(set->origins[i], set->origins[i - 1]);
+        far += glm::distance(set->origins[i], set->origins[i * 1999 % set->size()]);
+    }
+    EXPECT_LT(apart, 0.15 * far);
+}
+
 // The narrow lobe stays near the mirror direction of the floor; the wide one doesn't.
 TEST(GlossyRays, AlphaWidensTheLobe)
 {

@@ -1,0 +1,169 @@
+#include "bench/traced_method.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "bench/random.h"
+#include "runtime/light_field_file.h"
+#include "runtime/quality.h"
+#include "runtime/tracer_cpu.h"
+#include "svo/parallel.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+struct Spelled
+{
+    std::string tracer, file; // tracer is empty when the field is to tell
+    uint32_t lowFactor = 0;
+};
+
+Result<Spelled> parse(const std::string& what)
+{
+    Spelled out{{}, what, 0};
+    const size_t equals = what.find('=');
+    if (equals == std::string::npos) return out;
+    out.tracer = what.substr(0, equals);
+    out.file = what.substr(equals + 1);
+    if (const size_t slash = out.tracer.find('/'); slash != std::string::npos)
+    {
+        const std::string factor = out.tracer.substr(slash + 1);
+        const char* end = factor.data() + factor.size();
+        if (std::from_chars(factor.data(), end, out.lowFactor).ptr != end || out.lowFactor == 0)
+            return Error{ErrorCode::badArgument, "'" + factor + "' in '" + what + "' is no low factor; give 8, 16 or 32"};
+        out.tracer.resize(slash);
+    }
+    if (out.tracer != "ours" && !baselineNamed(out.tracer))
+        return Error{ErrorCode::badArgument, "'" + out.tracer + "' in '" + what + "' is not ours, b0, b0plus, b0plus-octree or wang"};
+    return out;
+}
+
+} // namespace
+
+Times timesOf(std::vector<double> milliseconds)
+{
+    assert(!milliseconds.empty());
+    std::ranges::sort(milliseconds);
+    const auto rank = [&](double share) { return milliseconds[size_t(std::ceil(share * double(milliseconds.size()))) - 1]; };
+    return {rank(0.05), rank(0.5), rank(0.95)};
+}
+
+std::vector<uint32_t> shuffledOrder(size_t count, uint64_t seed)
+{
+    std::vector<uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    Random random(seed, 0, 0);
+    for (size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
+    return order;
+}
+
+Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::string& what)
+{
+    auto spelled = parse(what);
+    if (!spelled) return spelled.error();
+    std::unique_ptr<TracedMethod> made(new TracedMethod(gpu));
+    made->path = spelled->file;
+    auto data = loadField(spelled->file);
+    if (!data) return data.error();
+    const bool octahedral = data->info.chart == gpu::kChartOctahedral;
+    if (!spelled->tracer.empty())
+        made->opponent = baselineNamed(spelled->tracer);
+    else if (octahedral)
+        made->opponent = data->info.gridX != 0 ? Baseline::b0Plus : Baseline::b0PlusOctree;
+    if (!made->opponent && octahedral)
+        return Error{ErrorCode::badInput,
+                     "Tracer ours needs cube probes; '" + spelled->file + "' has octahedral ones. Bake with --chart cube."};
+    made->label = made->opponent ? std::string(baselineName(*made->opponent)) : "ours";
+    if (spelled->lowFactor) made->label.append("/").append(std::to_string(spelled->lowFactor));
+    if (made->opponent) data = baselineField(std::move(*data), *made->opponent, spelled->lowFactor);
+    if (!data) return Error{data.error().code, "'" + spelled->file + "': " + data.error().message};
+    made->field = std::move(*data);
+    auto onDevice = LightField::create(gpu, made->field);
+    if (!onDevice) return onDevice.error();
+    made->onDevice.emplace(std::move(*onDevice));
+    auto tracer = RayTracer::create(gpu, *made->onDevice, made->opponent ? traceRaysPass(*made->opponent) : Spirv());
+    if (!tracer) return tracer.error();
+    made->tracer.emplace(std::move(*tracer));
+    auto timer = GpuTimer::create(gpu, 1);
+    if (!timer) return timer.error();
+    made->timer.emplace(std::move(*timer));
+    return made;
+}
+
+double TracedMethod::traceMebibytes() const
+{
+    return double(field.info.wordsPerProbe) * sizeof(uint32_t) / kMebibyte;
+}
+
+double TracedMethod::radianceMebibytes() const
+{
+    return double(field.radiance.size()) * sizeof(uint32_t) / double(field.info.probeCount) / kMebibyte;
+}
+
+std::vector<gpu::Ray> TracedMethod::raysOf(const RaySet& set) const
+{
+    const float offset = opponent ? baselineOffset(*opponent) : 0.0f;
+    std::vector<gpu::Ray> rays(set.size());
+    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + offset * set.normals[i], set.directions[i]};
+    return rays;
+}
+
+void TracedMethod::traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) const
+{
+    if (opponent)
+    {
+        traceBaselineOnCpu(field, *opponent, rays, hits);
+        return;
+    }
+    constexpr size_t kBatch = 1024;
+    parallelFor((rays.size() + kBatch - 1) / kBatch,
+                [&](size_t batch)
+                {
+                    twin::LightFieldTwin<float> text(field, Quality{}.trace);
+                    for (size_t i = batch * kBatch; i < std::min(rays.size(), (batch + 1) * kBatch); ++i)
+                        hits[i] = text.queryRay(rays[i].origin, rays[i].direction);
+                });
+}
+
+Status TracedMethod::prepare(std::span<const gpu::Ray> rays, std::span<const uint32_t> order)
+{
+    assert(rays.size() == order.size() && rays.size() <= (size_t(1) << 18));
+    timedRays = uint32_t(rays.size());
+    std::vector<gpu::Ray> shuffled(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) shuffled[i] = rays[order[i]];
+    auto first = gpu.makeBufferWith<gpu::Ray>(rays, 0, "rays");
+    if (!first) return first.error();
+    orderedRays = std::move(*first);
+    auto second = gpu.makeBufferWith<gpu::Ray>(shuffled, 0, "shuffled rays");
+    if (!second) return second.error();
+    shuffledRays = std::move(*second);
+    auto answers = gpu.makeBuffer(rays.size() * sizeof(gpu::RayHit), 0, MemoryUse::device, "ray hits");
+    if (!answers) return answers.error();
+    hitBuffer = std::move(*answers);
+    return success();
+}
+
+Result<double> TracedMethod::time(bool inOrder)
+{
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            timer->begin(cmd, "trace");
+            tracer->record(cmd, inOrder ? orderedRays : shuffledRays, hitBuffer, timedRays);
+            timer->end(cmd);
+        });
+    if (!status) return status.error();
+    const std::vector<GpuTimer::Scope> scopes = timer->read();
+    if (scopes.empty()) return Error{ErrorCode::missingFeature, "this device's queue has no timestamps; times need them"};
+    return scopes.front().milliseconds;
+}
+
+} // namespace sconce

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "bench/baselines.h"
+#include "bench/ray_sets.h"
+#include "runtime/light_field.h"
+
+namespace sconce
+{
+
+/// The 5th, 50th and 95th percentile (nearest rank) of some runs, milliseconds.
+struct Times
+{
+    double p5 = 0.0, median = 0.0, p95 = 0.0;
+};
+Times timesOf(std::vector<double> milliseconds);
+
+/// Positions 0..count-1 in an order that depends on the seed alone: what makes rays incoherent.
+std::vector<uint32_t> shuffledOrder(size_t count, uint64_t seed);
+
+/// A tracer with the light field it traces, on the device: one row of the bench.
+class TracedMethod
+{
+public:
+    /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours` or an opponent's name, which /F may follow for a low factor of F texels
+    ///              (b0plus/8=grid.sconce). Without a name: b0plus for octahedral maps on a grid, b0plus-octree for others, else ours.
+    static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, const std::string& what);
+
+    const std::string& name() const { return label; }
+    const std::string& file() const { return path; }
+    const FieldData& data() const { return field; }
+    std::optional<Baseline> baseline() const { return opponent; }
+    double traceMebibytes() const;    // a probe, of everything the trace reads but the index
+    double radianceMebibytes() const; // a probe
+
+    std::vector<gpu::Ray> raysOf(const RaySet& set) const; // off their surface as the tracer wants them
+    Status trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) { return tracer->trace(rays, hits); }
+    void traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) const;
+
+    /// Uploads the rays that time() traces, at most 2^18: in their order, and in the given one.
+    Status prepare(std::span<const gpu::Ray> rays, std::span<const uint32_t> order);
+    /// One run over the prepared rays, milliseconds of the trace pass alone by the device's clock.
+    Result<double> time(bool inOrder);
+
+private:
+    explicit TracedMethod(Gpu& device) : gpu(device) {}
+    Gpu& gpu;
+    std::string label, path;
+    std::optional<Baseline> opponent;
+    FieldData field;
+    std::optional<LightField> onDevice;
+    std::optional<RayTracer> tracer;
+    std::optional<GpuTimer> timer;
+    Buffer orderedRays, shuffledRays, hitBuffer;
+    uint32_t timedRays = 0;
+};
+
+} // namespace sconce
