@@ -94,7 +94,7 @@ TEST(Command, WrongUsageExitsWith2)
         {"check", "cornell", "--sun", "0,0,0"},
         {"check", "cornell", "--sky", "1,nan,1"},
         {"check", "cornell", "--sky=-1,0,0"},
-        {"bake", "cornell", "--probes", "p.json", "-o", "x.sconce", "--resolution", "100"},
+        {"bake", "cornell", "--probes", "p.json", "-o", "x.sconce", "--resolution", "32"},
         {"reference", "cornell", "-o", "x.exr", "--size", "0x10"},
         {"reference", "cornell", "-o", "x.exr", "--aov", "nonsense"},
         {"reference", "cornell", "-o", "x.exr", "--eye", "0,1,0"},
@@ -282,7 +282,9 @@ TEST(Command, RenderWritesTheLayersThatWereAskedFor)
 
     EXPECT_EQ(render("x.exr", {"--effects", "sparkle"}).exit, 2);
     EXPECT_EQ(render("x.exr", {"--aov", "sparkle"}).exit, 2);
-    EXPECT_EQ(render("x.exr", {"--tracer", "b0plus", "-q"}).exit, 3); // the field has cube faces
+    for (const char* tracer : {"b0", "b0plus", "b0plus-octree"}) // the field has cube faces
+        expectSentence(render("x.exr", {"--tracer", tracer, "-q"}), 3, "--chart octahedral");
+    EXPECT_EQ(jsonOf(render("wang.exr", {"--tracer", "wang", "--json"})).at("tracer"), "wang");
     EXPECT_EQ(sconceCommand({"render", "cornell", "--field", folder / "none.sconce", "-o", folder / "x.exr"}).exit, 5);
     EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
 }

@@ -159,7 +159,8 @@ TEST_P(BaselineOnGpu, AgreesWithTheCpuRayByRay)
         const bool same = cpu[i].status == hits[i].status && cpu[i].probe == hits[i].probe && cpu[i].handoffs == hits[i].handoffs &&
                           cpu[i].distanceReads == hits[i].distanceReads && std::abs(cpu[i].t - hits[i].t) <= 1e-4f * (1.0f + cpu[i].t);
         different += !same;
-        if (same) EXPECT_NEAR(glm::distance(vec3(cpu[i].radiance), vec3(hits[i].radiance)), 0.0f, 0.02f);
+        if (!same) continue;
+        EXPECT_NEAR(glm::distance(vec3(cpu[i].radiance), vec3(hits[i].radiance)), 0.0f, 0.02f);
     }
     EXPECT_LE(different, rays.size() / 50) << "2 %: a normalised direction a step rounds otherwise where a line grazes a texel's corner";
 }
@@ -191,9 +192,9 @@ TEST_P(BaselineOnGpu, OddRaysEndFinite)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BaselineOnGpu, testing::ValuesIn(kBaselines),
-                         [](const auto& info)
+                         [](const auto& parameter)
                          {
-                             std::string name(baselineName(info.param));
+                             std::string name(baselineName(parameter.param));
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });
