@@ -1,9 +1,11 @@
 // One probe of baselines B0 and B0+: the tracer of McGuire et al. 2017, "Real-Time Global Illumination using Precomputed Light Field
 // Probes", section 4, on octahedral probes, rebuilt from the paper's and its supplement's formulas and constants. kBaseline switches what
 // differs. B0 (kBaselineB0) keeps the supplement's defects; B0+ mends them:
-//   the ray's distance in a direction  one of two denominators by a fixed test      | the largest of three
-//   stepping                           one texel along the longer axis, bumps       | exact: no texel is jumped
+//   the ray's distance in a direction  one of two denominators by a fixed test     | the largest of three
 //   hand-over point                    direction where the run of fine texels began | where the step began
+//   last texel of a segment            may go untested                             | tested
+// One more is left as it is: a step is one texel along the longer axis and may jump a corner of a texel on the shorter one. Visiting every
+// texel that the line touches made B0+ slower and less right (docs/measurements.md).
 // In both, the hit test stands behind the march loops, where it costs the other lanes nothing; its results do not depend on that.
 // Shared text, see probe_trace.h; needs distanceWord, `field` with the octahedral chart, whose info.topLevel is log2 of its low factor, and kBaseline.
 
@@ -106,114 +108,36 @@ struct B0Line
 {
     vec2 P0;
     vec2 dP;
-    vec2 iP; // 1 / dP
 };
 
-SCONCE_FN vec3 b0LineDirection(SCONCE_IN(B0Line) line, real l) { return b0Direction(line.P0 + l * line.dP); }
-
-SCONCE_FN ivec2 b0FirstTexel(SCONCE_IN(B0Line) line)
-{
-    int last = int(field.faceSize) - 1;
-    return ivec2(min(max(int(line.P0.x), 0), last), min(max(int(line.P0.y), 0), last));
-}
-
-/// Where the line leaves the cell of 2^level texels that holds `texel`, not before l; `next` is the texel it enters there. Texels are
-/// stepped as integers, so that each is visited once.
-SCONCE_FN real b0Leave(SCONCE_IN(B0Line) line, ivec2 texel, int level, real l, SCONCE_OUT(ivec2) next)
-{
-    int mask = (1 << level) - 1;
-    ivec2 low = ivec2(texel.x & ~mask, texel.y & ~mask);
-    bool right = line.dP.x > real(0.0), up = line.dP.y > real(0.0);
-    real lx = (real(right ? low.x + mask + 1 : low.x) - line.P0.x) * line.iP.x;
-    real ly = (real(up ? low.y + mask + 1 : low.y) - line.P0.y) * line.iP.y;
-    real le = max(min(lx, ly), l);
-    if (lx <= ly)
-    {
-        next.x = right ? low.x + mask + 1 : low.x - 1;
-        next.y = min(max(int(line.P0.y + le * line.dP.y), low.y), low.y + mask);
-    }
-    else
-    {
-        next.x = min(max(int(line.P0.x + le * line.dP.x), low.x), low.x + mask);
-        next.y = up ? low.y + mask + 1 : low.y - 1;
-    }
-    return le;
-}
-
-/// The fine texels of the line within a low-resolution texel, from `first` at l0 on. True: the march stopped.
-SCONCE_FN bool b0FineExact(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line, ivec2 first, real l0)
-{
-    int low = int(field.topLevel);
-    ivec2 texel = first;
-    real l = l0;
-    vec3 va = b0LineDirection(line, l);
-    real ra = b0Radial(ray, va);
-    for (int i = 0; i < 2 * b0LowFactor(); ++i)
-    {
-        ivec2 next;
-        real le = min(b0Leave(line, texel, 0, l, next), real(1.0));
-        vec3 vb = b0LineDirection(line, le);
-        real rb = b0Radial(ray, vb);
-        uint word = b0Fetch(ray, texel.x, texel.y);
-        if (max(ra, rb) >= b0Distance(word))
-        {
-            b0Stop(ray, line.P0 + real(0.5) * (l + le) * line.dP, word, min(ra, rb), ra * va);
-            return true;
-        }
-        if (le >= real(1.0) || (next.x >> low) != (first.x >> low) || (next.y >> low) != (first.y >> low)) return false;
-        texel = next;
-        l = le;
-        ra = rb;
-        va = vb;
-    }
-    return false;
-}
-
-SCONCE_FN bool b0SegmentExact(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line)
-{
-    int low = int(field.topLevel);
-    ivec2 texel = b0FirstTexel(line);
-    real l = real(0.0);
-    real ra = b0Radial(ray, b0LineDirection(line, l));
-    for (int i = 0; i < 2 * (int(field.faceSize) >> low) + 2; ++i)
-    {
-        ivec2 next;
-        real le = min(b0Leave(line, texel, low, l, next), real(1.0));
-        real rb = b0Radial(ray, b0LineDirection(line, le));
-        if (b0FetchLow(ray, texel.x >> low, texel.y >> low) < max(ra, rb) && b0FineExact(ray, line, texel, l)) return true;
-        if (le >= real(1.0)) return false;
-        texel = next;
-        l = le;
-        ra = rb;
-    }
-    return false;
-}
-
-/// The supplement's run of fine texels from `entry` to `leave` (pixels): one texel a step along the longer axis, sampled at the step's middle.
-SCONCE_FN bool b0FinePublished(SCONCE_INOUT(B0Ray) ray, vec2 entry, vec2 leave)
+/// The run of fine texels from `entry` to `leave` (pixels): one texel a step along the longer axis, sampled at the step's middle. True: the
+/// march stopped.
+SCONCE_FN bool b0Fine(SCONCE_INOUT(B0Ray) ray, vec2 entry, vec2 leave)
 {
     vec2 across = leave - entry;
     real steps = max(abs(across.x), abs(across.y));
-    vec3 v0 = b0Direction(entry); // not moved on with the steps: the supplement's hand-over is measured from here
-    real ra = b0Radial(ray, v0);
+    vec3 va = b0Direction(entry);
+    real ra = b0Radial(ray, va);
     for (int i = 0; i < 2 * b0LowFactor() + 4 && real(i) <= steps; ++i)
     {
         vec2 middle = entry + min((real(i) + real(0.5)) / max(steps, real(1e-6)), real(1.0)) * across;
-        real rb = b0Radial(ray, b0Direction(entry + (real(i) + real(1.0)) / max(steps, real(1e-6)) * across));
+        vec3 vb = b0Direction(entry + (real(i) + real(1.0)) / max(steps, real(1e-6)) * across);
+        real rb = b0Radial(ray, vb);
         uint word = b0Fetch(ray, int(middle.x), int(middle.y));
         if (max(ra, rb) >= b0Distance(word))
         {
-            b0Stop(ray, middle, word, min(ra, rb), ra * v0);
+            b0Stop(ray, middle, word, min(ra, rb), ra * va);
             return true;
         }
         ra = rb;
+        if (!kPublished) va = vb; // the supplement measures its hand-over from where the run began
     }
     return false;
 }
 
-/// The supplement's walk over the low-resolution texels from `entry` (pixels) to P1. True: a texel that may hold the hit, entered at
+/// The walk over the low-resolution texels from `entry` (pixels) to P1. True: a texel that may hold the hit, entered at
 /// `entry` and left at `leave`.
-SCONCE_FN bool b0LowPublished(SCONCE_INOUT(B0Ray) ray, SCONCE_INOUT(vec2) entry, vec2 P1, SCONCE_OUT(vec2) leave)
+SCONCE_FN bool b0Low(SCONCE_INOUT(B0Ray) ray, SCONCE_INOUT(vec2) entry, vec2 P1, SCONCE_OUT(vec2) leave)
 {
     real size = real(b0LowFactor());
     vec2 start = entry;
@@ -242,18 +166,19 @@ SCONCE_FN bool b0LowPublished(SCONCE_INOUT(B0Ray) ray, SCONCE_INOUT(vec2) entry,
     return false;
 }
 
-SCONCE_FN bool b0SegmentPublished(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line)
+SCONCE_FN bool b0Segment(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line)
 {
     vec2 P1 = line.P0 + line.dP;
     vec2 p = line.P0;
     vec2 leave;
     for (int i = 0; i < 4 * (int(field.faceSize) >> int(field.topLevel)) + 4; ++i)
     {
-        if (!b0LowPublished(ray, p, P1, leave)) return false;
-        if (b0FinePublished(ray, p, leave)) return true;
+        if (!b0Low(ray, p, P1, leave)) return false;
+        if (b0Fine(ray, p, leave)) return true;
         vec2 rest = P1 - p;
         real length_ = length(rest);
-        if (!(length_ > real(0.0)) || dot(rest, P1 - leave) <= length_) return false; // within a texel of the end, which may go untested
+        // The supplement ends within a texel of the segment's end, which may go untested.
+        if (!(length_ > real(0.0)) || dot(rest, P1 - leave) <= (kPublished ? real(1.0) : real(0.1)) * length_) return false;
         p = leave + real(0.1) / length_ * rest;
     }
     return false;
@@ -269,7 +194,6 @@ SCONCE_FN B0Line b0Project(SCONCE_IN(B0Ray) ray, real t0, real t1)
     B0Line line;
     line.P0 = octahedralFromDirection(start) * real(field.faceSize);
     line.dP = octahedralFromDirection(end) * real(field.faceSize) - line.P0;
-    line.iP = vec2(abs(line.dP.x) > real(1e-9) ? real(1.0) / line.dP.x : real(-1e9), abs(line.dP.y) > real(1e-9) ? real(1.0) / line.dP.y : real(-1e9));
     return line;
 }
 

@@ -35,8 +35,7 @@ SCONCE_FN uint baselineProbe(SCONCE_INOUT(B0Ray) ray, real tMax)
         if (cut.t[i + 1] - cut.t[i] < real(0.001) / real(field.scale)) continue;
         B0Line line = b0Project(ray, cut.t[i], cut.t[i + 1]);
         if (kBaseline == kBaselineWang) stopped = wangSegment(ray, line);
-        else if (kPublished) stopped = b0SegmentPublished(ray, line);
-        else stopped = b0SegmentExact(ray, line);
+        else stopped = b0Segment(ray, line);
     }
     return stopped ? b0Resolve(ray) : kMiss;
 }
