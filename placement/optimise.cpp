@@ -85,13 +85,12 @@ struct Proposal
     std::vector<uint8_t> row;
 };
 
-void rate(Proposal& proposal, const Visibility& visibility, const FreeSpace& space, const ViewTargets& targets, float clearance,
-          const std::vector<uint8_t>& others)
+void rate(Proposal& proposal, const LegalSpace& legal, const ViewTargets& targets, float clearance, const std::vector<uint8_t>& others)
 {
     proposal.gain = 0;
-    if (!legalPosition(visibility, space, proposal.position, clearance)) return;
+    if (!legal.allows(proposal.position, clearance)) return;
     proposal.row.resize(targets.size());
-    targets.rate(visibility, proposal.position, proposal.row);
+    targets.rate(legal.visibility, proposal.position, proposal.row);
     proposal.gain = gainOf(proposal.row, others.data());
 }
 
@@ -126,11 +125,11 @@ vec3 sampleCube(const std::array<float, 8>& fitness, std::span<const float, 7> u
     return {glm::mix(low.x, high.x, z), glm::mix(low.y, high.y, z), z};
 }
 
-Status optimisePositions(const Visibility& visibility, const FreeSpace& space, const ViewTargets& targets, std::vector<vec3>& positions,
+Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, std::vector<vec3>& positions,
                          const OptimiseSettings& settings, const Progress& progress)
 {
     if (settings.refine == Refine::none || positions.empty() || targets.size() == 0) return success();
-    Views views(visibility, targets, positions);
+    Views views(legal.visibility, targets, positions);
     std::vector<vec3> best = positions;
     uint64_t bestFitness = views.fitness();
     float step = settings.step > 0.0f ? settings.step : 0.25f * targets.spacing;
@@ -145,7 +144,7 @@ Status optimisePositions(const Visibility& visibility, const FreeSpace& space, c
                 return Error{ErrorCode::cancelled, "The refinement of probes was cancelled."};
             RandomStream random(settings.seed, round * positions.size() + k);
             views.without(k, others);
-            const bool comfortable = settings.comfort > 0.0f && visibility.distance(positions[k], settings.comfort) >= settings.comfort;
+            const bool comfortable = settings.comfort > 0.0f && legal.visibility.distance(positions[k], settings.comfort) >= settings.comfort;
             const float clearance = comfortable ? settings.comfort : settings.clearance;
             const uint64_t present = gainOf(views.row(k), others.data());
             tbb::parallel_for(size_t(0), supports.size(),
@@ -153,7 +152,7 @@ Status optimisePositions(const Visibility& visibility, const FreeSpace& space, c
                               {
                                   const vec3 side((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
                                   supports[corner].position = positions[k] + step * side;
-                                  rate(supports[corner], visibility, space, targets, clearance, others);
+                                  rate(supports[corner], legal, targets, clearance, others);
                               });
             Proposal* proposal =
                 &*std::max_element(supports.begin(), supports.end(), [](const Proposal& a, const Proposal& b) { return a.gain < b.gain; });
@@ -164,7 +163,7 @@ Status optimisePositions(const Visibility& visibility, const FreeSpace& space, c
                 for (size_t corner = 0; corner < 8; ++corner) fitness[corner] = float(supports[corner].gain);
                 for (float& uniform : uniforms) uniform = random.uniform();
                 drawn.position = positions[k] + step * (2.0f * sampleCube(fitness, uniforms) - 1.0f);
-                rate(drawn, visibility, space, targets, clearance, others);
+                rate(drawn, legal, targets, clearance, others);
                 // The corners are rated already: the best of them stands in for a draw that is worse.
                 if (drawn.gain > proposal->gain) proposal = &drawn;
             }

@@ -6,6 +6,7 @@
 
 #include "placement/free_space.h"
 #include "placement/select.h"
+#include "placement/skeleton.h"
 #include "placement/visibility.h"
 #include "scene/progress.h"
 #include "scene/result.h"
@@ -37,7 +38,7 @@ struct OptimiseSettings
 /// Moves probes, one at a time, to where the fitness of the whole set is higher. The fitness R is the sum over targets of the best view's
 /// worth; the paper's equation (2) adds the views of all probes up, which rewards probes that crowd before the same wall. Legal positions
 /// stay legal. The best set met is kept, so R never falls. Deterministic for any number of threads. Errors: cancelled.
-Status optimisePositions(const Visibility& visibility, const FreeSpace& space, const ViewTargets& targets, std::vector<vec3>& positions,
+Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, std::vector<vec3>& positions,
                          const OptimiseSettings& settings, const Progress& progress);
 
 /// A number in [0,1] with density proportional to (1 - x) f0 + x f1, from a uniform one: the inverse of the linear model's distribution.

@@ -27,6 +27,11 @@ constexpr float kComfort = 0.09f; // of the probes' spacing, metres from surface
 constexpr size_t kTableBytes = size_t(400) << 20;
 constexpr uint32_t kGuessedCount = 64; // for the spacing while the count is open
 
+size_t numberOf(const std::vector<Pin>& pins, Pin::Kind kind)
+{
+    return size_t(std::count_if(pins.begin(), pins.end(), [kind](const Pin& pin) { return pin.kind == kind; }));
+}
+
 std::string faultOf(const PlaceSettings& settings)
 {
     const bool ownGrid = settings.grid != glm::ivec3(0);
@@ -44,6 +49,16 @@ std::string faultOf(const PlaceSettings& settings)
     if (settings.refineRounds > 1000) return fmt::format("refineRounds is {}; give 0 to 1000.", settings.refineRounds);
     if (settings.refineSurfels < 1000 || settings.refineSurfels > 1'000'000)
         return fmt::format("refineSurfels is {}; give 1000 to 1000000.", settings.refineSurfels);
+    const size_t kept = numberOf(settings.pins, Pin::Kind::keep), added = numberOf(settings.pins, Pin::Kind::add);
+    if (settings.method == PlaceSettings::Method::grid && !settings.pins.empty()) return "pins are given but a grid has no free choice.";
+    if (settings.count != 0 && kept > settings.count) return fmt::format("{} probes are kept but count is {}; raise it.", kept, settings.count);
+    if (std::max(kept, size_t(settings.count)) + added > kMostProbes)
+        return fmt::format("{} probes are asked for beside {} added ones; at most {} can be indexed.", std::max(kept, size_t(settings.count)),
+                           added, kMostProbes);
+    for (const Pin& pin : settings.pins)
+        if (!std::isfinite(pin.position.x + pin.position.y + pin.position.z) || !(pin.kind != Pin::Kind::forbid || pin.radius > 0.0f))
+            return fmt::format("the pin at ({}, {}, {}) with radius {} is not finite, or forbids nothing.", pin.position.x, pin.position.y,
+                               pin.position.z, pin.radius);
     for (const vec3& point : settings.inside)
         if (!std::isfinite(point.x + point.y + point.z))
             return fmt::format("the inside point ({}, {}, {}) is not finite.", point.x, point.y, point.z);
@@ -78,13 +93,13 @@ ProbeSet placeGrid(const FreeSpace& space, const PlaceSettings& settings, PlaceR
 
 /// Positions before surface points that the others leave unseen: out along a random direction of the point's hemisphere, anywhere up to
 /// what is hit there.
-std::vector<Candidate> gapCandidates(const Visibility& visibility, const FreeSpace& space, std::span<const Surfel> gaps, size_t count,
-                                     float clearance, uint64_t seed)
+std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Surfel> gaps, size_t count, float clearance, uint64_t seed)
 {
+    const Visibility& visibility = legal.visibility;
     if (gaps.empty()) return {};
     std::vector<Candidate> found;
     std::vector<vec3> drawn(count);
-    std::vector<uint8_t> legal(count);
+    std::vector<uint8_t> allowed(count);
     for (size_t round = 0; round < 12 && found.size() < count; ++round)
     {
         tbb::parallel_for(size_t(0), count,
@@ -96,14 +111,14 @@ std::vector<Candidate> gapCandidates(const Visibility& visibility, const FreeSpa
                               if (glm::dot(direction, gap.normal) < 0.0f) direction = -direction;
                               const vec3 start = gap.position + visibility.epsilon() * gap.normal;
                               RayHit hit;
-                              const float reach = visibility.cast(start, direction, hit) ? hit.t : space.bounds.diagonal();
+                              const float reach = visibility.cast(start, direction, hit) ? hit.t : legal.space.bounds.diagonal();
                               // Squared: the far part of a cone is free more often, the near part sees more of what hides in a corner.
                               const float share = random.uniform();
                               drawn[i] = start + share * share * reach * direction;
-                              legal[i] = legalPosition(visibility, space, drawn[i], clearance);
+                              allowed[i] = legal.allows(drawn[i], clearance);
                           });
         for (size_t i = 0; i < count && found.size() < count; ++i)
-            if (legal[i]) found.push_back({drawn[i], Candidate::Origin::gap});
+            if (allowed[i]) found.push_back({drawn[i], Candidate::Origin::gap});
     }
     return found;
 }
@@ -118,6 +133,10 @@ const char* nameOf(Candidate::Origin origin)
         return "free point";
     case Candidate::Origin::gap:
         return "gap in the view of others";
+    case Candidate::Origin::kept:
+        return "kept as pinned";
+    case Candidate::Origin::added:
+        return "added as pinned";
     }
     return "";
 }
@@ -161,19 +180,52 @@ Result<ProbeSet> explained(const Visibility& visibility, const ViewTargets& targ
     return set;
 }
 
+/// The pinned probes; kept ones first.
+std::vector<Candidate> pinnedCandidates(const std::vector<Pin>& pins)
+{
+    std::vector<Candidate> found;
+    for (const auto& [kind, origin] :
+         {std::pair{Pin::Kind::keep, Candidate::Origin::kept}, std::pair{Pin::Kind::add, Candidate::Origin::added}})
+        for (const Pin& pin : pins)
+            if (pin.kind == kind) found.push_back({pin.position, origin});
+    return found;
+}
+
+/// Why a pinned probe may not be where it is; empty when all may.
+std::string faultOfPins(const LegalSpace& legal, float clearance)
+{
+    for (const Candidate& pinned : pinnedCandidates({legal.pins.begin(), legal.pins.end()}))
+    {
+        const vec3 p = pinned.position;
+        const std::string probe = fmt::format("Placement: the pinned probe at ({}, {}, {}) ", p.x, p.y, p.z);
+        const float distance = legal.visibility.distance(p, 1.001f * clearance);
+        if (!legal.space.contains(p)) return probe + "lies in solid or outside the reachable space; move it, or name its space by --inside.";
+        if (distance < clearance)
+            return probe + fmt::format("is {} m from a surface, nearer than the clearance of {} m; move it or lower the clearance.", distance,
+                                       clearance);
+        if (!legal.allows(p, clearance)) return probe + "lies in a forbidden place or behind a thin wall; move it.";
+    }
+    return {};
+}
+
 Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibility, const FreeSpace& space, const PlaceSettings& settings,
                                  PlaceReport& report, const Progress& progress)
 {
     const float clearance = settings.clearance > 0.0f ? settings.clearance : space.field.voxel;
     report.clearance = clearance;
+    const LegalSpace legal{visibility, space, settings.pins};
+    if (const std::string fault = faultOfPins(legal, clearance); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    std::vector<Candidate> candidates = pinnedCandidates(settings.pins);
+    const size_t pinned = candidates.size();
+    const uint32_t count = settings.count ? settings.count + uint32_t(numberOf(settings.pins, Pin::Kind::add)) : 0;
     // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
-    const float comfort = std::max(clearance, kComfort * probeSpacing(space, settings.count ? settings.count : kGuessedCount));
+    const float comfort = std::max(clearance, kComfort * probeSpacing(space, count ? count : kGuessedCount));
     report.comfort = comfort;
     if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
-    const double planned = std::max(double(settings.candidates), 3.5 * double(settings.count)); // many probes need many candidates
-    std::vector<Candidate> candidates = skeletonCandidates(visibility, space, size_t(planned * kRidgeShare), comfort);
+    const double planned = std::max(double(settings.candidates), 3.5 * double(count)); // many probes need many candidates
+    for (const Candidate& candidate : skeletonCandidates(legal, size_t(planned * kRidgeShare), comfort)) candidates.push_back(candidate);
     for (const Candidate& candidate :
-         spreadCandidates(visibility, space, size_t(planned * kSpreadShare), comfort, settings.seed ^ 0x737072656164ull))
+         spreadCandidates(legal, size_t(planned * kSpreadShare), comfort, settings.seed ^ 0x737072656164ull))
         candidates.push_back(candidate);
     if (candidates.empty())
         return Error{ErrorCode::badInput,
@@ -187,16 +239,16 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
         return Error{ErrorCode::badInput,
                      fmt::format("No ray from the free space of scene '{}' hits a surface; check --inside.", scene.name)};
 
-    const ViewTargets targets(visibility, std::move(surfels), probeSpacing(space, settings.count ? settings.count : kGuessedCount));
+    const ViewTargets targets(visibility, std::move(surfels), probeSpacing(space, count ? count : kGuessedCount));
     ViewTable table;
     if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
-    std::vector<uint32_t> chosen = chooseGreedily(table, settings.count, settings.coverage);
+    std::vector<uint32_t> chosen = chooseGreedily(table, count, settings.coverage, pinned);
     const std::vector<uint8_t> best = bestValues(table, chosen);
     std::vector<Surfel> gaps;
     for (size_t s = 0; s < targets.size(); ++s)
         if (best[s] == 0) gaps.push_back(targets.surfels[s]);
     for (const Candidate& candidate :
-         gapCandidates(visibility, space, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
+         gapCandidates(legal, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
         candidates.push_back(candidate);
     if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
 
@@ -206,22 +258,22 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     report.candidates = candidates.size();
     report.bestPossible =
         float(double(targets.size() - size_t(std::count(bestOfAll.begin(), bestOfAll.end(), uint8_t(0)))) / double(targets.size()));
-    if (settings.count > candidates.size())
+    if (count > candidates.size())
         return Error{ErrorCode::badArgument,
                      fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
                                  "count or the clearance.",
-                                 settings.count, candidates.size(), clearance)};
+                                 count, candidates.size(), clearance)};
 
     const auto choose = [&](float target)
     {
-        chosen = chooseGreedily(table, settings.count, target);
+        chosen = chooseGreedily(table, count, target, pinned);
         // A pass costs candidates x surfels x probes bytes; beyond this many probes the greedy choice stands.
-        if (settings.count && chosen.size() <= 600) improveByExchange(table, chosen, 2);
-        if (!settings.count) pruneNeedless(table, chosen);
+        if (count && chosen.size() <= 600) improveByExchange(table, chosen, 2, pinned);
+        if (!count) pruneNeedless(table, chosen, pinned);
     };
     if (!sconce::report(progress, "choice", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
     choose(settings.coverage);
-    if (settings.count == 0)
+    if (count == 0)
     {
         // The choice is fitted to its surfels; other samples see a little less, so aim higher until those are content too.
         float target = settings.coverage;
@@ -251,7 +303,8 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     optimise.clearance = clearance;
     optimise.comfort = comfort;
     optimise.seed = settings.seed;
-    if (const Status done = optimisePositions(visibility, space, refining, positions, optimise, progress); !done) return done.error();
+    optimise.fixed = pinned;
+    if (const Status done = optimisePositions(legal, refining, positions, optimise, progress); !done) return done.error();
 
     std::vector<Candidate> final;
     for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], candidates[chosen[k]].origin});

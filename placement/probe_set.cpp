@@ -50,6 +50,16 @@ bool readVector(const Json& json, glm::vec3& value)
     return finite(value);
 }
 
+Error badFile(const std::filesystem::path& file, const std::string& what)
+{
+    return Error{ErrorCode::badInput, "Probe file '" + file.string() + "': " + what + "."};
+}
+
+std::string noPosition(size_t index)
+{
+    return fmt::format("probe {} has no \"position\" of three finite numbers", index);
+}
+
 std::string readGrid(const Json& json, size_t probes, ProbeGrid& grid)
 {
     const auto count = json.is_object() ? json.find("count") : json.end();
@@ -68,6 +78,31 @@ std::string readGrid(const Json& json, size_t probes, ProbeGrid& grid)
     if (!json.contains("origin") || !readVector(json["origin"], grid.origin)) return "\"grid\" needs \"origin\" as three finite numbers";
     if (!json.contains("step") || !readVector(json["step"], grid.step)) return "\"grid\" needs \"step\" as three finite numbers";
     return {};
+}
+
+/// The list "probes" of a file and what else it holds. Errors: fileError, badInput; both name the file.
+Result<Json> readProbeFile(const std::filesystem::path& file)
+{
+    std::error_code fault;
+    const uintmax_t bytes = std::filesystem::file_size(file, fault);
+    std::ifstream in(file, std::ios::binary);
+    if (fault || !in) return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read; check the path."};
+    if (bytes > kMostBytes) return badFile(file, fmt::format("it has {} bytes, more than any set of {} probes needs", bytes, kMostInFile));
+    std::string text(static_cast<size_t>(bytes), '\0');
+    if (!in.read(text.data(), std::streamsize(text.size())))
+        return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read whole."};
+
+    Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+    if (json.is_discarded()) return badFile(file, "it is not valid JSON; write it again with sconce place");
+    if (!json.is_object() || !json.contains("probes") || !json["probes"].is_array()) return badFile(file, "it has no list \"probes\"");
+    if (json["probes"].size() > kMostInFile)
+        return badFile(file, fmt::format("it has {} probes; at most {} can be indexed", json["probes"].size(), kMostInFile));
+    return json;
+}
+
+bool readPosition(const Json& probe, glm::vec3& position)
+{
+    return probe.is_object() && probe.contains("position") && readVector(probe["position"], position);
 }
 
 } // namespace
@@ -129,30 +164,16 @@ Status saveProbes(const ProbeSet& set, const std::filesystem::path& file)
 
 Result<ProbeSet> loadProbes(const std::filesystem::path& file)
 {
-    const auto bad = [&file](const std::string& what) {
-        return Error{ErrorCode::badInput, "Probe file '" + file.string() + "': " + what + "."};
-    };
-    std::error_code fault;
-    const uintmax_t bytes = std::filesystem::file_size(file, fault);
-    std::ifstream in(file, std::ios::binary);
-    if (fault || !in) return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read; check the path."};
-    if (bytes > kMostBytes) return bad(fmt::format("it has {} bytes, more than any set of {} probes needs", bytes, kMostInFile));
-    std::string text(static_cast<size_t>(bytes), '\0');
-    if (!in.read(text.data(), std::streamsize(text.size())))
-        return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read whole."};
-
-    const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-    if (json.is_discarded()) return bad("it is not valid JSON; write it again with sconce place");
-    if (!json.is_object() || !json.contains("probes") || !json["probes"].is_array()) return bad("it has no list \"probes\"");
+    const auto bad = [&file](const std::string& what) { return badFile(file, what); };
+    const Result<Json> read = readProbeFile(file);
+    if (!read) return read.error();
+    const Json& json = *read;
     const Json& list = json["probes"];
-    if (list.size() > kMostInFile) return bad(fmt::format("it has {} probes; at most {} can be indexed", list.size(), kMostInFile));
-
     ProbeSet set;
     for (size_t index = 0; index < list.size(); ++index)
     {
         PlacedProbe probe;
-        if (!list[index].is_object() || !list[index].contains("position") || !readVector(list[index]["position"], probe.position))
-            return bad(fmt::format("probe {} has no \"position\" of three finite numbers", index));
+        if (!readPosition(list[index], probe.position)) return bad(noPosition(index));
         if (list[index].contains("why"))
         {
             if (!list[index]["why"].is_string()) return bad(fmt::format("\"why\" of probe {} is not text", index));
@@ -177,6 +198,40 @@ Result<ProbeSet> loadProbes(const std::filesystem::path& file)
         if (const std::string what = readGrid(json["grid"], list.size(), *set.grid); !what.empty()) return bad(what);
     }
     return set;
+}
+
+Result<std::vector<Pin>> loadPins(const std::filesystem::path& file)
+{
+    const Result<Json> json = readProbeFile(file);
+    if (!json) return json.error();
+    const Json& list = (*json)["probes"];
+    std::vector<Pin> pins;
+    for (size_t index = 0; index < list.size(); ++index)
+    {
+        const Json& one = list[index];
+        Pin pin;
+        if (!readPosition(one, pin.position)) return badFile(file, noPosition(index));
+        if (one.contains("pin"))
+        {
+            const std::string kind = one["pin"].is_string() ? one["pin"].get<std::string>() : one["pin"].dump(-1, ' ', true);
+            if (kind != "keep" && kind != "add" && kind != "forbid")
+                return badFile(file, fmt::format("\"pin\" of probe {} is {}; give \"keep\", \"add\" or \"forbid\"", index, kind));
+            pin.kind = kind == "keep" ? Pin::Kind::keep : kind == "add" ? Pin::Kind::add : Pin::Kind::forbid;
+        }
+        const bool forbids = pin.kind == Pin::Kind::forbid;
+        if (forbids != one.contains("radius"))
+            return badFile(file, forbids ? fmt::format("probe {} forbids a place without a \"radius\" in metres", index)
+                                         : fmt::format("probe {} has a \"radius\" but forbids nothing; give \"pin\": \"forbid\"", index));
+        if (forbids)
+        {
+            const double radius = one["radius"].is_number() ? one["radius"].get<double>() : 0.0;
+            pin.radius = float(radius);
+            if (!(pin.radius > 0.0f && std::isfinite(pin.radius)))
+                return badFile(file, fmt::format("\"radius\" of probe {} is not a length above 0 metres", index));
+        }
+        pins.push_back(pin);
+    }
+    return pins;
 }
 
 } // namespace sconce

@@ -106,16 +106,23 @@ Status extendTable(ViewTable& table, const Visibility& visibility, const ViewTar
     return success();
 }
 
-std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage)
+std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage, size_t fixed)
 {
     const size_t wanted = count ? std::min(count, table.candidates()) : table.candidates();
     const size_t enough = size_t(std::ceil(double(coverage) * double(table.surfels)));
     std::vector<uint8_t> best(table.surfels, 0);
-    std::vector<Bound> bounds(table.candidates());
-    tbb::parallel_for(size_t(0), bounds.size(), [&](size_t c) { bounds[c] = {gainOf(table.row(c), best.data()), uint32_t(c)}; });
-    std::priority_queue<Bound> queue(std::less<Bound>(), std::move(bounds));
     std::vector<uint32_t> chosen;
     size_t seen = 0, barren = 0; // barren: choices in a row that saw nothing new
+    for (uint32_t candidate = 0; candidate < fixed; ++candidate)
+    {
+        seen += newlySeen(table.row(candidate), best);
+        raise(best, table.row(candidate));
+        chosen.push_back(candidate);
+    }
+    std::vector<Bound> bounds(table.candidates() - fixed);
+    tbb::parallel_for(size_t(0), bounds.size(),
+                      [&](size_t i) { bounds[i] = {gainOf(table.row(fixed + i), best.data()), uint32_t(fixed + i)}; });
+    std::priority_queue<Bound> queue(std::less<Bound>(), std::move(bounds));
     while (chosen.size() < wanted && !queue.empty() && (count || (seen < enough && barren < 16)))
     {
         Bound top = queue.top();
@@ -143,7 +150,7 @@ std::vector<uint8_t> bestValues(const ViewTable& table, std::span<const uint32_t
     return best;
 }
 
-void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, int rounds)
+void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, int rounds, size_t fixed)
 {
     std::vector<uint64_t> gains(table.candidates());
     for (int round = 0; round < rounds; ++round)
@@ -159,6 +166,11 @@ void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, in
         }
         for (size_t k = 0; k < chosen.size(); ++k)
         {
+            if (chosen[k] < fixed)
+            {
+                raise(before, table.row(chosen[k]));
+                continue;
+            }
             std::vector<uint8_t> without = before;
             raise(without, after[k + 1]);
             tbb::parallel_for(size_t(0), gains.size(), [&](size_t c) { gains[c] = gainOf(table.row(c), without.data()); });
@@ -174,7 +186,7 @@ void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, in
     }
 }
 
-void pruneNeedless(const ViewTable& table, std::vector<uint32_t>& chosen)
+void pruneNeedless(const ViewTable& table, std::vector<uint32_t>& chosen, size_t fixed)
 {
     std::vector<uint32_t> seenBy(table.surfels, 0);
     std::vector<std::pair<size_t, size_t>> bySight; // surfels seen, slot
@@ -190,7 +202,7 @@ void pruneNeedless(const ViewTable& table, std::vector<uint32_t>& chosen)
     for (const auto& [seen, k] : bySight)
     {
         const auto row = table.row(chosen[k]);
-        bool alone = false;
+        bool alone = chosen[k] < fixed;
         for (size_t s = 0; s < row.size() && !alone; ++s) alone = row[s] != 0 && seenBy[s] == 1;
         if (alone) continue;
         needless[k] = 1;

@@ -50,14 +50,15 @@ Status extendTable(ViewTable& table, const Visibility& visibility, const ViewTar
 
 /// Greedy cover (Nemhauser, Wolsey, Fisher 1978: within 1 - 1/e of the best): each next candidate adds most to the sum over surfels of the
 /// best value so far. What is already seen can still gain quality, so probes beyond full coverage go where points are seen badly.
-/// @param count     how many to choose; 0: until `coverage` of the surfels is seen, or no candidate sees another
-std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage);
+/// @param count  how many to choose; 0: until `coverage` of the surfels is seen, or no candidate sees another
+/// @param fixed  the first so many candidates are chosen whatever they see, here and below
+std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage, size_t fixed = 0);
 
 /// Exchange (Teitz and Bart 1968): replaces a chosen candidate by a better one while that gains, at most `rounds` times through.
-void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, int rounds);
+void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, int rounds, size_t fixed = 0);
 
 /// Drops chosen candidates, least worth first, that see nothing which the others don't see.
-void pruneNeedless(const ViewTable& table, std::vector<uint32_t>& chosen);
+void pruneNeedless(const ViewTable& table, std::vector<uint32_t>& chosen, size_t fixed = 0);
 
 /// Sorts the chosen so that each next one sees most surfels that the earlier do not, and says which share that is.
 std::vector<float> orderByGain(const ViewTable& table, std::vector<uint32_t>& chosen);

@@ -58,16 +58,19 @@ size_t countClusters(const DistanceField& field, const std::vector<uint32_t>& ri
 
 } // namespace
 
-bool legalPosition(const Visibility& visibility, const FreeSpace& space, vec3 point, float clearance)
+bool LegalSpace::allows(vec3 point, float clearance) const
 {
+    for (const Pin& pin : pins)
+        if (pin.kind == Pin::Kind::forbid && glm::distance(point, pin.position) <= pin.radius) return false;
     if (!space.contains(point) || visibility.distance(point, 1.001f * clearance) < clearance) return false;
     // A cell next to a thin wall may hold points beyond it: the way to the cell's centre must be free.
     const vec3 centre = space.field.centre(space.field.cellAt(point));
     return visibility.unoccluded(point, centre);
 }
 
-std::vector<Candidate> skeletonCandidates(const Visibility& visibility, const FreeSpace& space, size_t count, float clearance)
+std::vector<Candidate> skeletonCandidates(const LegalSpace& legal, size_t count, float clearance)
 {
+    const FreeSpace& space = legal.space;
     const DistanceField& field = space.field;
     std::vector<uint8_t> isRidge(space.cells.size());
     tbb::parallel_for(size_t(0), space.cells.size(),
@@ -116,27 +119,27 @@ std::vector<Candidate> skeletonCandidates(const Visibility& visibility, const Fr
     for (uint64_t key : order)
     {
         const vec3 position = field.centre(field.cell(nearest[key].second));
-        if (legalPosition(visibility, space, position, clearance)) found.push_back({position, Candidate::Origin::ridge});
+        if (legal.allows(position, clearance)) found.push_back({position, Candidate::Origin::ridge});
     }
     return found;
 }
 
-std::vector<Candidate> spreadCandidates(const Visibility& visibility, const FreeSpace& space, size_t count, float clearance, uint64_t seed)
+std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, float clearance, uint64_t seed)
 {
     std::vector<Candidate> found;
     std::vector<vec3> drawn(std::max<size_t>(count, 64));
-    std::vector<uint8_t> legal(drawn.size());
+    std::vector<uint8_t> allowed(drawn.size());
     for (size_t round = 0; round < 64 && found.size() < count; ++round)
     {
         tbb::parallel_for(size_t(0), drawn.size(),
                           [&](size_t i)
                           {
                               RandomStream random(seed, round * drawn.size() + i);
-                              drawn[i] = space.randomPoint(random);
-                              legal[i] = legalPosition(visibility, space, drawn[i], clearance);
+                              drawn[i] = legal.space.randomPoint(random);
+                              allowed[i] = legal.allows(drawn[i], clearance);
                           });
         for (size_t i = 0; i < drawn.size() && found.size() < count; ++i)
-            if (legal[i]) found.push_back({drawn[i], Candidate::Origin::spread});
+            if (allowed[i]) found.push_back({drawn[i], Candidate::Origin::spread});
     }
     return found;
 }

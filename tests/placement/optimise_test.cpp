@@ -93,7 +93,7 @@ TEST(OptimisePositions, FitnessRisesAndPositionsStayLegal)
         settings.refine = refine;
         settings.clearance = 0.1f;
         settings.step = 0.5f;
-        ASSERT_TRUE(optimisePositions(*room.visibility, *room.space, room.targets, positions, settings, {}));
+        ASSERT_TRUE(optimisePositions({*room.visibility, *room.space}, room.targets, positions, settings, {}));
         EXPECT_GT(room.fitness(positions), before + before / 50);
         for (const vec3& position : positions) EXPECT_GE(bruteDistance(room.scene, position), 0.1 - 1e-5);
     }
@@ -106,7 +106,7 @@ TEST(OptimisePositions, FixedOnesStay)
     std::vector<vec3> positions{pinned, {0.7f, 2.5f, 0.5f}};
     OptimiseSettings settings;
     settings.fixed = 1;
-    ASSERT_TRUE(optimisePositions(*room.visibility, *room.space, room.targets, positions, settings, {}));
+    ASSERT_TRUE(optimisePositions({*room.visibility, *room.space}, room.targets, positions, settings, {}));
     EXPECT_EQ(positions[0], pinned);
     EXPECT_NE(positions[1], vec3(0.7f, 2.5f, 0.5f));
 }
@@ -119,7 +119,7 @@ TEST(OptimisePositions, SamePositionsForAnyNumberOfThreads)
     {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         results.push_back({{0.5f, 2.5f, 0.5f}, {0.7f, 2.5f, 0.5f}, {3.0f, 1.5f, 2.0f}});
-        ASSERT_TRUE(optimisePositions(*room.visibility, *room.space, room.targets, results.back(), {}, {}));
+        ASSERT_TRUE(optimisePositions({*room.visibility, *room.space}, room.targets, results.back(), {}, {}));
     }
     EXPECT_EQ(results[0], results[1]);
 }
@@ -128,7 +128,7 @@ TEST(OptimisePositions, StopsWhenAsked)
 {
     const Room room;
     std::vector<vec3> positions{{0.5f, 2.5f, 0.5f}};
-    const Status done = optimisePositions(*room.visibility, *room.space, room.targets, positions, {}, [](auto, double) { return false; });
+    const Status done = optimisePositions({*room.visibility, *room.space}, room.targets, positions, {}, [](auto, double) { return false; });
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().code, ErrorCode::cancelled);
 }

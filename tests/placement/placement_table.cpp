@@ -75,7 +75,7 @@ struct Table
                          [&]
                          {
                              std::vector<vec3> positions;
-                             for (const Candidate& candidate : skeletonCandidates(visibility, space, count, space.field.voxel))
+                             for (const Candidate& candidate : skeletonCandidates({visibility, space}, count, space.field.voxel))
                                  positions.push_back(candidate.position);
                              return Result<ProbeSet>(setOf(positions, "skeleton"));
                          });

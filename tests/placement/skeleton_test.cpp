@@ -20,7 +20,7 @@ TEST(SkeletonCandidates, LieOnTheMedialAxisOfARoom)
     ASSERT_TRUE(visibility);
     const auto space = findFreeSpace(scene, *visibility, {}, 200000);
     ASSERT_TRUE(space);
-    const std::vector<Candidate> candidates = skeletonCandidates(*visibility, *space, 300, 0.1f);
+    const std::vector<Candidate> candidates = skeletonCandidates({*visibility, *space}, 300, 0.1f);
     ASSERT_GT(candidates.size(), 50u);
     ASSERT_LE(candidates.size(), 300u);
     for (const Candidate& candidate : candidates)
@@ -39,7 +39,7 @@ TEST(SpreadCandidates, KeepTheClearance)
     ASSERT_TRUE(visibility);
     const auto space = findFreeSpace(scene, *visibility, {}, 100000);
     ASSERT_TRUE(space);
-    const std::vector<Candidate> candidates = spreadCandidates(*visibility, *space, 500, 0.3f, 1);
+    const std::vector<Candidate> candidates = spreadCandidates({*visibility, *space}, 500, 0.3f, 1);
     EXPECT_EQ(candidates.size(), 500u);
     for (const Candidate& candidate : candidates) EXPECT_GE(bruteDistance(scene, candidate.position), 0.3f - 1e-5f);
 }
