@@ -144,7 +144,8 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
                 return Error{ErrorCode::cancelled, "The refinement of probes was cancelled."};
             RandomStream random(settings.seed, round * positions.size() + k);
             views.without(k, others);
-            const bool comfortable = settings.comfort > 0.0f && legal.visibility.distance(positions[k], settings.comfort) >= settings.comfort;
+            const bool comfortable =
+                settings.comfort > 0.0f && legal.visibility.distance(positions[k], settings.comfort) >= settings.comfort;
             const float clearance = comfortable ? settings.comfort : settings.clearance;
             const uint64_t present = gainOf(views.row(k), others.data());
             tbb::parallel_for(size_t(0), supports.size(),

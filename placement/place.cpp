@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "placement/ball_shrinking.h"
 #include "placement/optimise.h"
 #include "placement/random.h"
 #include "placement/select.h"
@@ -51,10 +52,11 @@ std::string faultOf(const PlaceSettings& settings)
         return fmt::format("refineSurfels is {}; give 1000 to 1000000.", settings.refineSurfels);
     const size_t kept = numberOf(settings.pins, Pin::Kind::keep), added = numberOf(settings.pins, Pin::Kind::add);
     if (settings.method == PlaceSettings::Method::grid && !settings.pins.empty()) return "pins are given but a grid has no free choice.";
-    if (settings.count != 0 && kept > settings.count) return fmt::format("{} probes are kept but count is {}; raise it.", kept, settings.count);
+    if (settings.count != 0 && kept > settings.count)
+        return fmt::format("{} probes are kept but count is {}; raise it.", kept, settings.count);
     if (std::max(kept, size_t(settings.count)) + added > kMostProbes)
-        return fmt::format("{} probes are asked for beside {} added ones; at most {} can be indexed.", std::max(kept, size_t(settings.count)),
-                           added, kMostProbes);
+        return fmt::format("{} probes are asked for beside {} added ones; at most {} can be indexed.",
+                           std::max(kept, size_t(settings.count)), added, kMostProbes);
     for (const Pin& pin : settings.pins)
         if (!std::isfinite(pin.position.x + pin.position.y + pin.position.z) || !(pin.kind != Pin::Kind::forbid || pin.radius > 0.0f))
             return fmt::format("the pin at ({}, {}, {}) with radius {} is not finite, or forbids nothing.", pin.position.x, pin.position.y,
@@ -129,6 +131,8 @@ const char* nameOf(Candidate::Origin origin)
     {
     case Candidate::Origin::ridge:
         return "skeleton ridge";
+    case Candidate::Origin::ball:
+        return "skeleton ball";
     case Candidate::Origin::spread:
         return "free point";
     case Candidate::Origin::gap:
@@ -199,10 +203,11 @@ std::string faultOfPins(const LegalSpace& legal, float clearance)
         const vec3 p = pinned.position;
         const std::string probe = fmt::format("Placement: the pinned probe at ({}, {}, {}) ", p.x, p.y, p.z);
         const float distance = legal.visibility.distance(p, 1.001f * clearance);
-        if (!legal.space.contains(p)) return probe + "lies in solid or outside the reachable space; move it, or name its space by --inside.";
+        if (!legal.space.contains(p))
+            return probe + "lies in solid or outside the reachable space; move it, or name its space by --inside.";
         if (distance < clearance)
-            return probe + fmt::format("is {} m from a surface, nearer than the clearance of {} m; move it or lower the clearance.", distance,
-                                       clearance);
+            return probe + fmt::format("is {} m from a surface, nearer than the clearance of {} m; move it or lower the clearance.",
+                                       distance, clearance);
         if (!legal.allows(p, clearance)) return probe + "lies in a forbidden place or behind a thin wall; move it.";
     }
     return {};
@@ -223,14 +228,17 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     report.comfort = comfort;
     if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
     const double planned = std::max(double(settings.candidates), 3.5 * double(count)); // many probes need many candidates
-    for (const Candidate& candidate : skeletonCandidates(legal, size_t(planned * kRidgeShare), comfort)) candidates.push_back(candidate);
-    for (const Candidate& candidate :
-         spreadCandidates(legal, size_t(planned * kSpreadShare), comfort, settings.seed ^ 0x737072656164ull))
+    const size_t onSkeleton = size_t(planned * kRidgeShare);
+    for (const Candidate& candidate : settings.method == PlaceSettings::Method::balls
+                                          ? ballCandidates(scene, legal, onSkeleton, comfort, settings.seed ^ 0x62616c6c73ull)
+                                          : skeletonCandidates(legal, onSkeleton, comfort))
+        candidates.push_back(candidate);
+    for (const Candidate& candidate : spreadCandidates(legal, size_t(planned * kSpreadShare), comfort, settings.seed ^ 0x737072656164ull))
         candidates.push_back(candidate);
     if (candidates.empty())
         return Error{ErrorCode::badInput,
-                     fmt::format("Scene '{}' has no free position {} m away from all surfaces; lower the clearance or raise the "
-                                 "number of voxels (a cell is {} m).",
+                     fmt::format("Scene '{}' has no free position {} m away from all surfaces and outside forbidden places; lower the "
+                                 "clearance, forbid less, or raise the number of voxels (a cell is {} m).",
                                  scene.name, clearance, space.field.voxel)};
 
     const double samples = std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0));
@@ -247,8 +255,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     std::vector<Surfel> gaps;
     for (size_t s = 0; s < targets.size(); ++s)
         if (best[s] == 0) gaps.push_back(targets.surfels[s]);
-    for (const Candidate& candidate :
-         gapCandidates(legal, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
+    for (const Candidate& candidate : gapCandidates(legal, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
         candidates.push_back(candidate);
     if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
 
@@ -331,7 +338,7 @@ Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, 
     Result<ProbeSet> set = isGrid ? Result<ProbeSet>(placeGrid(*space, settings, report))
                                   : placeBySkeleton(scene, *visibility, *space, settings, report, progress);
     if (!set) return set;
-    set->method = isGrid ? "grid" : "sdf";
+    set->method = isGrid ? "grid" : settings.method == PlaceSettings::Method::balls ? "balls" : "sdf";
     set->scene = scene.name;
     set->seed = settings.seed;
 

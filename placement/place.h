@@ -22,15 +22,16 @@ struct PlaceSettings
 {
     enum class Method
     {
-        sdf, // skeleton of the distance field, greedy cover, exchange
-        grid // uniform grid in the bounds of the reachable space; points in solid stay
+        sdf,   // skeleton of the distance field, greedy cover, exchange
+        balls, // the same with the skeleton of ball shrinking
+        grid   // uniform grid in the bounds of the reachable space; points in solid stay
     };
     Method method = Method::sdf;
     glm::ivec3 grid{0};       // grid: points along each axis, product 1..65,535; 0: chosen from `count`
-    uint32_t count = 0;       // probes, 0..65,535; 0: sdf takes the fewest that reach `coverage`, grid takes 64
-    float coverage = 0.995f;  // (0,1], share of the surface points that rays hit; used by sdf when count is 0
+    uint32_t count = 0;       // probes, 0..65,535; 0: the fewest that reach `coverage`; a grid takes 64
+    float coverage = 0.995f;  // (0,1], share of the surface points that rays hit; when count is 0, grid apart
     std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
-    std::vector<Pin> pins;    // positions that the user decides; sdf only. Kept ones count as probes of `count`, added ones don't
+    std::vector<Pin> pins;    // positions that the user decides; not with a grid. Kept ones count as probes of `count`, added ones don't
     uint64_t seed = 1;        // of every random choice; same scene, settings and seed: same bytes
     float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
     uint32_t voxels = kDefaultVoxels;   // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each

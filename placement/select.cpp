@@ -121,7 +121,9 @@ std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float
     }
     std::vector<Bound> bounds(table.candidates() - fixed);
     tbb::parallel_for(size_t(0), bounds.size(),
-                      [&](size_t i) { bounds[i] = {gainOf(table.row(fixed + i), best.data()), uint32_t(fixed + i)}; });
+                      [&](size_t i) {
+                          bounds[i] = {gainOf(table.row(fixed + i), best.data()), uint32_t(fixed + i)};
+                      });
     std::priority_queue<Bound> queue(std::less<Bound>(), std::move(bounds));
     while (chosen.size() < wanted && !queue.empty() && (count || (seen < enough && barren < 16)))
     {

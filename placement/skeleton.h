@@ -16,7 +16,8 @@ struct Candidate
 {
     enum class Origin : uint8_t
     {
-        ridge,  // on the skeleton of the free space
+        ridge,  // on the skeleton of the free space, by the distance field
+        ball,   // the same by ball shrinking
         spread, // random free point
         gap,    // before a surface point that the others see badly
         kept,   // given by the user: stays, and counts as one of the probes asked for

@@ -94,7 +94,7 @@ struct Bake
     ProbeTarget target(size_t probe)
     {
         const size_t words = field.info.wordsPerProbe, texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
-        const size_t irradiance = 2 * gpu::kIrradianceSize * gpu::kIrradianceSize;
+        const size_t irradiance = kIrradianceWordsPerProbe;
         return {std::span(field.distance).subspan(probe * words, words),
                 std::span(field.radiance).subspan(probe * texels, texels),
                 std::span(surfaces).subspan(probe * texels, texels),
@@ -177,7 +177,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     info = fieldSpace(scene.bounds());
     info.sky = scene.sky;
     info.probeCount = uint32_t(probes.size());
-    setChart(info, settings.chart, settings.chart == gpu::kChartCube ? settings.resolution / 2 : settings.resolution);
+    setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
     if (settings.grid)
     {
         info.gridX = uint32_t(settings.grid->count.x);
@@ -207,7 +207,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         bake.field.radiance.resize(texels);
         bake.surfaces.resize(texels);
         if (deviceScene->lights().header.emitterCount > 0) bake.emitted.resize(texels);
-        bake.field.irradiance.resize(probes.size() * 2 * gpu::kIrradianceSize * gpu::kIrradianceSize);
+        bake.field.irradiance.resize(probes.size() * kIrradianceWordsPerProbe);
         if (bake.octahedral())
         {
             bake.cube.info = info;

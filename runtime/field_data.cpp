@@ -42,4 +42,16 @@ uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size)
     return (chart == gpu::kChartOctahedral ? 1u : 6u) * size * size;
 }
 
+uint32_t chartSize(uint32_t chart, uint32_t resolution)
+{
+    return chart == gpu::kChartCube ? resolution / 2 : resolution;
+}
+
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution)
+{
+    const uint32_t size = chartSize(chart, resolution);
+    const size_t words = size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe;
+    return words * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+}
+
 } // namespace sconce

@@ -43,5 +43,12 @@ FieldBytes bytesByPart(const FieldData& field);
 uint32_t coarsestLevel(uint32_t faceSize);
 uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size);
 uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size);
+inline constexpr uint32_t kIrradianceWordsPerProbe = 2 * gpu::kIrradianceSize * gpu::kIrradianceSize;
+
+/// Texels a side of a chart's map where an octahedral one has `resolution`: cube faces have half of it.
+uint32_t chartSize(uint32_t chart, uint32_t resolution);
+
+/// Bytes that every further probe adds to a light field, index apart: what a budget of memory is divided by.
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution);
 
 } // namespace sconce

@@ -141,7 +141,7 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         n * sizeof(gpu::ProbeHeader),
         product({n, i.wordsPerProbe, 4}),
         product({n, radianceWordsPerProbe(i.chart, i.faceSize), 4}),
-        n * gpu::kIrradianceSize * gpu::kIrradianceSize * 8,
+        n * kIrradianceWordsPerProbe * sizeof(uint32_t),
         sizeof(OctreeHeader),
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
     };

@@ -25,7 +25,6 @@ namespace
 
 constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32B32A32_UINT; // layout: shaders/bake_gbuffer.frag
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr uint32_t kIrradianceWords = 2 * gpu::kIrradianceSize * gpu::kIrradianceSize;
 constexpr float kNear = 1e-4f; // share of the diagonal: a probe nearer than this to a surface doesn't see it
 
 void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
@@ -72,11 +71,12 @@ Status ProbeBaker::createBuffers()
         MemoryUse use;
         const char* what;
     };
-    const uint64_t transferWords = uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWords + (octahedral ? faceTexels : 0);
+    const uint64_t transferWords =
+        uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWordsPerProbe + (octahedral ? faceTexels : 0);
     std::vector<Need> needs = {{words, info.wordsPerProbe, MemoryUse::device, "A probe's distance words"},
                                {light, 4ull * radianceWords, MemoryUse::device, "A probe's radiance"},
                                {cells, 4ull * 6 * 32 * 32, MemoryUse::device, "A probe's coarse cells"},
-                               {irradiance, kIrradianceWords, MemoryUse::device, "A probe's irradiance"},
+                               {irradiance, kIrradianceWordsPerProbe, MemoryUse::device, "A probe's irradiance"},
                                {transfer, transferWords, MemoryUse::readback, "The bake's transfer buffer"}};
     if (octahedral)
     {
@@ -268,9 +268,9 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
     const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), lightBytes = radianceWords * VkDeviceSize(emitters ? 12 : 8);
     const VkDeviceSize faceBytes = octahedral ? VkDeviceSize(6) * info.faceSize * info.faceSize * 4 : 0;
     assert(target.distance.size_bytes() == wordBytes && target.radiance.size() == radianceWords && target.surface.size() == radianceWords &&
-           target.emitted.size() == (emitters ? radianceWords : 0) && target.irradiance.size() == kIrradianceWords &&
+           target.emitted.size() == (emitters ? radianceWords : 0) && target.irradiance.size() == kIrradianceWordsPerProbe &&
            target.faces.size_bytes() == faceBytes);
-    const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWords * 4;
+    const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWordsPerProbe * 4;
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
@@ -280,7 +280,7 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
             recordGather(cmd, true);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, wordBytes}}, words);
             copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
-            copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWords * 4}}, irradiance);
+            copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
             if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
@@ -327,15 +327,15 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
             dispatch(cmd, bouncePass, sets, pushFor(centre), info.faceSize, octahedral ? 1 : 6);
             recordGather(cmd, false);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
-            copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWords * 4}}, irradiance);
+            copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });
     if (!status) return status;
     std::memcpy(target.radiance.data(), transfer.mapped(), radianceBytes);
-    std::vector<uint32_t> fresh(kIrradianceWords);
-    std::memcpy(fresh.data(), transfer.mapped() + radianceBytes, kIrradianceWords * 4);
-    for (uint32_t i = 0; i < kIrradianceWords; i += 2) target.irradiance[i] = fresh[i]; // the odd words are the moments
+    std::vector<uint32_t> fresh(kIrradianceWordsPerProbe);
+    std::memcpy(fresh.data(), transfer.mapped() + radianceBytes, kIrradianceWordsPerProbe * 4);
+    for (uint32_t i = 0; i < kIrradianceWordsPerProbe; i += 2) target.irradiance[i] = fresh[i]; // the odd words are the moments
     return success();
 }
 

@@ -1,8 +1,10 @@
 // sconce place: where the probes of a scene go.
+#include <algorithm>
 #include <iostream>
 
 #include "bench/image_io.h"
 #include "placement/place.h"
+#include "runtime/field_data.h"
 #include "tools/common.h"
 
 namespace sconce::tools
@@ -17,15 +19,48 @@ struct PlaceOptions
     PlaceSettings settings;
     std::string output;
     std::string explain;
+    std::string pins;
+    uint64_t memory = 0;       // bytes; 0: no budget
+    uint32_t resolution = 512; // what the budget is counted for
 };
+
+/// As many probes as the budget holds. Errors: badArgument with the bytes that one needs.
+Result<uint32_t> countFor(uint64_t memory, uint32_t resolution)
+{
+    const uint64_t each = bytesPerProbe(gpu::kChartCube, resolution);
+    if (memory < each)
+        return Error{ErrorCode::badArgument, "--memory is " + std::to_string(memory) + " bytes, but one probe takes " +
+                                                 std::to_string(each) + " at --resolution " + std::to_string(resolution) +
+                                                 "; raise the one or lower the other."};
+    return uint32_t(std::min<uint64_t>(memory / each, kMostProbes));
+}
 
 int runPlace(const PlaceOptions& options, const Context& context)
 {
     const Stopwatch watch;
+    PlaceSettings settings = options.settings;
+    if (options.memory > 0)
+    {
+        const Result<uint32_t> count = countFor(options.memory, options.resolution);
+        if (!count) return fail(count.error());
+        settings.count = *count;
+    }
+    if (!options.pins.empty())
+    {
+        Result<std::vector<Pin>> pins = loadPins(options.pins);
+        if (!pins) return fail(pins.error());
+        settings.pins = std::move(*pins);
+        const auto added =
+            std::count_if(settings.pins.begin(), settings.pins.end(), [](const Pin& pin) { return pin.kind == Pin::Kind::add; });
+        if (options.memory > 0 && uint64_t(added) >= settings.count)
+            return fail(Error{ErrorCode::badArgument, "--memory holds " + std::to_string(settings.count) + " probes but --pin adds " +
+                                                          std::to_string(added) + "; raise the budget or add fewer."});
+        if (options.memory > 0) settings.count -= uint32_t(added); // added ones need memory, too
+    }
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     PlaceReport report;
-    Result<ProbeSet> set = placeProbes(*scene, options.settings, report, consoleProgress(context));
+    Result<ProbeSet> set = placeProbes(*scene, settings, report, consoleProgress(context));
     if (!set) return fail(set.error());
     for (const std::string& warning : report.warnings) note(context, "Note: " + warning);
     if (set->scene.empty()) set->scene = scene->name;
@@ -73,12 +108,15 @@ void addPlaceCommand(CLI::App& app, Context& context)
     PlaceSettings& settings = options->settings;
     options->scene.add(command);
     command->add_option("-o,--output", options->output, "probes.json to write (required)")->required()->type_name("FILE");
-    const std::map<std::string, PlaceSettings::Method> methods{{"sdf", PlaceSettings::Method::sdf}, {"grid", PlaceSettings::Method::grid}};
+    const std::map<std::string, PlaceSettings::Method> methods{
+        {"sdf", PlaceSettings::Method::sdf}, {"balls", PlaceSettings::Method::balls}, {"grid", PlaceSettings::Method::grid}};
     command
-        ->add_option("--method", settings.method,
-                     "sdf: skeleton of the distance field; grid: uniform grid in the reachable space (default: sdf)")
+        ->add_option(
+            "--method", settings.method,
+            "sdf: skeleton of the distance field; balls: skeleton by ball shrinking; grid: uniform grid in the reachable space (default: "
+            "sdf)")
         ->transform(unlisted(CLI::CheckedTransformer(methods)))
-        ->type_name("sdf|grid");
+        ->type_name("sdf|balls|grid");
     command
         ->add_option_function<std::string>(
             "--grid",
@@ -91,9 +129,29 @@ void addPlaceCommand(CLI::App& app, Context& context)
             },
             "Probes along each axis of the grid; implies --method grid (default: chosen from --count; range: product 1 to 65535)")
         ->type_name("NxNxN");
-    command->add_option("--count", settings.count, "Probes (default: sdf the fewest that reach --coverage, grid 64; range: 1 to 65535)")
-        ->check(unlisted(CLI::Range(1u, kMostProbes)))
-        ->type_name("N");
+    CLI::Option* count =
+        command->add_option("--count", settings.count, "Probes (default: sdf the fewest that reach --coverage, grid 64; range: 1 to 65535)")
+            ->check(unlisted(CLI::Range(1u, kMostProbes)))
+            ->type_name("N");
+    command
+        ->add_option(
+            "--memory", options->memory,
+            "As many probes as fit these bytes of maps at --resolution, cube faces; the index of a few MB comes on top (default: no "
+            "budget; range: what one probe takes to 2^64-1)")
+        ->excludes(count)
+        ->check(unlisted(CLI::Range(uint64_t(1), ~uint64_t(0))))
+        ->type_name("BYTES");
+    command
+        ->add_option("--resolution", options->resolution,
+                     "That the field will be baked with; only --memory asks (default: 512; range: 64 to 2048)")
+        ->check(unlisted(CLI::Range(64u, 2048u)))
+        ->type_name("TEXELS");
+    command
+        ->add_option(
+            "--pin", options->pins,
+            "Positions you decide, in the form of probes.json: \"pin\": \"keep\" stays (as does a probe that says nothing), \"add\" "
+            "stays beside --count, \"forbid\" with \"radius\" in metres allows no probe there; not with a grid (default: none)")
+        ->type_name("FILE");
     command
         ->add_option("--coverage", settings.coverage,
                      "Share of the surface points that rays hit which some probe must see, when --count is not given (default: 0.995; "

@@ -99,6 +99,17 @@ TEST(PlaceProbes, EmptyRoomNeedsOneProbe)
     EXPECT_NEAR(report.newlyCovered.at(0), 1.0f, 1e-3f);
 }
 
+TEST(PlaceProbes, BallShrinkingServesAsWellAsTheDistanceField)
+{
+    PlaceSettings settings = quick(8);
+    settings.method = PlaceSettings::Method::balls;
+    PlaceReport report;
+    const ProbeSet set = placed(furnishedRoom(), settings, report);
+    EXPECT_EQ(set.method, "balls");
+    EXPECT_GT(report.coverageRays, 0.999f);
+    for (const PlacedProbe& probe : set.probes) EXPECT_GE(bruteDistance(furnishedRoom(), probe.position), report.clearance - 1e-5f);
+}
+
 TEST(PlaceProbes, CountFollowsFromTheCoverageAskedFor)
 {
     PlaceSettings settings = quick(0);
@@ -148,6 +159,88 @@ TEST(PlaceProbes, GridKeepsItsPointsInSolids)
     EXPECT_GT(report.gridOutside, 20u);
 }
 
+TEST(PlaceProbes, KeptProbesStayAndCount)
+{
+    const Scene scene = furnishedRoom();
+    PlaceSettings settings = quick(6);
+    const std::vector<vec3> kept{{0.5f, 2.5f, 0.5f}, {0.8f, 0.4f, 3.5f}};
+    for (const vec3& position : kept) settings.pins.push_back({Pin::Kind::keep, position, 0.0f});
+    PlaceReport report;
+    const ProbeSet set = placed(scene, settings, report);
+    ASSERT_EQ(set.probes.size(), 6u);
+    for (const vec3& position : kept)
+    {
+        const auto found = std::find_if(set.probes.begin(), set.probes.end(), [&](const PlacedProbe& p) { return p.position == position; });
+        ASSERT_NE(found, set.probes.end());
+        EXPECT_NE(found->why.find("kept"), std::string::npos) << found->why;
+    }
+    EXPECT_GT(report.coverageRays, 0.999f);
+}
+
+TEST(PlaceProbes, AddedProbesComeOnTop)
+{
+    PlaceSettings settings = quick(3);
+    settings.pins = {{Pin::Kind::add, {0.5f, 2.5f, 0.5f}, 0.0f}, {Pin::Kind::keep, {5.5f, 2.5f, 3.5f}, 0.0f}};
+    PlaceReport report;
+    const ProbeSet set = placed(furnishedRoom(), settings, report);
+    ASSERT_EQ(set.probes.size(), 4u);
+    EXPECT_EQ(report.alone.size(), 4u);
+    EXPECT_EQ(std::count_if(set.probes.begin(), set.probes.end(), [](const PlacedProbe& p) { return p.why.starts_with("added"); }), 1);
+    settings.count = 0; // the fewest that see enough, and the pinned
+    settings.coverage = 0.6f;
+    EXPECT_GE(placed(furnishedRoom(), settings, report).probes.size(), 2u);
+}
+
+TEST(PlaceProbes, ForbiddenPlacesStayEmpty)
+{
+    PlaceSettings settings = quick(12);
+    const Pin forbidden{Pin::Kind::forbid, {1.5f, 1.5f, 2.0f}, 1.4f};
+    PlaceReport report;
+    const auto within = [&](const ProbeSet& set)
+    {
+        return std::count_if(set.probes.begin(), set.probes.end(),
+                             [&](const PlacedProbe& p) { return glm::distance(p.position, forbidden.position) <= forbidden.radius; });
+    };
+    EXPECT_GT(within(placed(furnishedRoom(), settings, report)), 0);
+    settings.pins = {forbidden};
+    EXPECT_EQ(within(placed(furnishedRoom(), settings, report)), 0);
+}
+
+TEST(PlaceProbes, ARunWithItsOwnProbesPinnedGivesThemBack)
+{
+    PlaceSettings settings = quick(5);
+    PlaceReport report;
+    const ProbeSet set = placed(furnishedRoom(), settings, report);
+    for (const PlacedProbe& probe : set.probes) settings.pins.push_back({Pin::Kind::keep, probe.position, 0.0f});
+    const ProbeSet again = placed(furnishedRoom(), settings, report);
+    ASSERT_EQ(again.probes.size(), 5u);
+    for (const PlacedProbe& probe : set.probes)
+        EXPECT_TRUE(
+            std::any_of(again.probes.begin(), again.probes.end(), [&](const PlacedProbe& p) { return p.position == probe.position; }));
+}
+
+TEST(PlaceProbes, PinsThatCannotBeAreNamed)
+{
+    const auto messageOf = [](std::vector<Pin> pins, uint32_t count = 2, ErrorCode code = ErrorCode::badArgument)
+    {
+        PlaceSettings settings = quick(count);
+        settings.inside = {{5, 1, 2}};
+        settings.pins = std::move(pins);
+        PlaceReport report;
+        const auto set = placeProbes(dividedRoom(), settings, report);
+        EXPECT_FALSE(set);
+        if (!set) EXPECT_EQ(set.error().code, code);
+        return set ? std::string() : set.error().message;
+    };
+    const vec3 good(5, 1, 2);
+    EXPECT_NE(messageOf({{Pin::Kind::keep, {1, 1, 2}, 0}}).find("(1, 1, 2) lies in solid or outside"), std::string::npos);
+    EXPECT_NE(messageOf({{Pin::Kind::keep, {5, 1, 0.001f}, 0}}).find("clearance"), std::string::npos);
+    EXPECT_NE(messageOf({{Pin::Kind::add, good, 0}, {Pin::Kind::forbid, good, 1}}).find("forbidden"), std::string::npos);
+    EXPECT_NE(messageOf({{Pin::Kind::keep, good, 0}, {Pin::Kind::keep, {5, 2, 2}, 0}}, 1).find("2 probes are kept"), std::string::npos);
+    EXPECT_NE(messageOf({{Pin::Kind::forbid, good, 100}}, 2, ErrorCode::badInput).find("forbidden"), std::string::npos);
+    EXPECT_NE(messageOf({{Pin::Kind::keep, {NAN, 1, 2}, 0}}).find("nan"), std::string::npos);
+}
+
 TEST(PlaceProbes, BadSettingsAreNamed)
 {
     const Scene scene = closedRoom({4, 3, 4});
@@ -169,6 +262,7 @@ TEST(PlaceProbes, BadSettingsAreNamed)
     EXPECT_NE(messageOf([](PlaceSettings& s) { s.voxels = 1; }).find("voxels"), std::string::npos);
     EXPECT_NE(messageOf([](PlaceSettings& s) { s.inside = {{INFINITY, 0, 0}}; }).find("inside"), std::string::npos);
     EXPECT_NE(messageOf([](PlaceSettings& s) { s.grid = {2, 2, 2}; }).find("grid"), std::string::npos);
+    EXPECT_NE(messageOf([](PlaceSettings& s) { s.method = PlaceSettings::Method::grid, s.pins = {{}}; }).find("pins"), std::string::npos);
     const auto grid = [](PlaceSettings& s, glm::ivec3 shape) { s.method = PlaceSettings::Method::grid, s.count = 0, s.grid = shape; };
     EXPECT_NE(messageOf([&](PlaceSettings& s) { grid(s, {2, 0, 2}); }).find("2x0x2"), std::string::npos);
     EXPECT_NE(messageOf([&](PlaceSettings& s) { grid(s, {60000, 60000, 60000}); }).find("60000"), std::string::npos);

@@ -141,5 +141,45 @@ TEST_F(ProbeSetFile, NonFinitePositionIsNotWritten)
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 
+TEST_F(ProbeSetFile, PinsSayWhatTheyAre)
+{
+    std::ofstream(file) << R"({"probes":[{"position":[1,2,3],"why":"x"},{"position":[4,5,6],"pin":"add"},
+        {"position":[7,8,9],"pin":"forbid","radius":0.5},{"position":[0,0,0],"pin":"keep"}]})";
+    const auto pins = loadPins(file);
+    ASSERT_TRUE(pins) << pins.error().message;
+    ASSERT_EQ(pins->size(), 4u);
+    EXPECT_EQ((*pins)[0].kind, Pin::Kind::keep);
+    EXPECT_EQ((*pins)[0].position, glm::vec3(1, 2, 3));
+    EXPECT_EQ((*pins)[1].kind, Pin::Kind::add);
+    EXPECT_EQ((*pins)[2].kind, Pin::Kind::forbid);
+    EXPECT_EQ((*pins)[2].radius, 0.5f);
+    EXPECT_EQ((*pins)[3].kind, Pin::Kind::keep);
+}
+
+TEST_F(ProbeSetFile, BadPinsGetASentence)
+{
+    const std::pair<const char*, const char*> cases[] = {
+        {"{", "JSON"},
+        {"[]", "probes"},
+        {R"({"probes":[{"position":[1,2]}]})", "position"},
+        {R"({"probes":[{"position":[1,2,3],"pin":"stay"}]})", "stay"},
+        {R"({"probes":[{"position":[1,2,3],"pin":7}]})", "7"},
+        {R"({"probes":[{"position":[1,2,3],"pin":"forbid"}]})", "radius"},
+        {R"({"probes":[{"position":[1,2,3],"pin":"forbid","radius":0}]})", "radius"},
+        {R"({"probes":[{"position":[1,2,3],"pin":"forbid","radius":"wide"}]})", "radius"},
+        {R"({"probes":[{"position":[1,2,3],"pin":"forbid","radius":1e300}]})", "radius"},
+        {R"({"probes":[{"position":[1,2,3],"radius":2}]})", "forbid"},
+    };
+    for (const auto& [text, names] : cases)
+    {
+        std::ofstream(file) << text;
+        const auto pins = loadPins(file);
+        ASSERT_FALSE(pins) << text;
+        EXPECT_EQ(pins.error().code, ErrorCode::badInput);
+        EXPECT_NE(pins.error().message.find(names), std::string::npos) << pins.error().message;
+    }
+    EXPECT_EQ(loadPins(folder / "none.json").error().code, ErrorCode::fileError);
+}
+
 } // namespace
 } // namespace sconce

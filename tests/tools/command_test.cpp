@@ -91,6 +91,8 @@ TEST(Command, WrongUsageExitsWith2)
         {"place", "cornell", "-o", "x.json", "--grid", "4x4"},
         {"place", "cornell", "-o", "x.json", "--inside", "1,2"},
         {"place", "cornell", "-o", "x.json", "--count", "-1"},
+        {"place", "cornell", "-o", "x.json", "--memory", "0"},
+        {"place", "cornell", "-o", "x.json", "--memory", "1e9", "--count", "3"},
         {"check", "cornell", "--sun", "0,0,0"},
         {"check", "cornell", "--sky", "1,nan,1"},
         {"check", "cornell", "--sky=-1,0,0"},
@@ -174,6 +176,37 @@ TEST(Command, DoctorListsDevices)
     bool usable = false;
     for (const json& device : report.at("devices")) usable = usable || device.at("usable").get<bool>();
     EXPECT_EQ(result.exit, usable ? 0 : 4);
+}
+
+TEST(Command, PlaceHonoursPinsAndMemory)
+{
+    const TestFolder folder;
+    writeText(folder / "pins.json", R"({"probes":[{"position":[0.75,1.5,0.5]},{"position":[-0.5,1.5,0.25],"pin":"add"}]})");
+    const auto place = [&](std::vector<std::string> more)
+    {
+        std::vector<std::string> arguments = {"place", "cornell", "-o", folder / "p.json", "--json", "--pin", folder / "pins.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return sconceCommand(arguments);
+    };
+    EXPECT_EQ(jsonOf(place({"--count", "3"})).at("probes"), 4);
+    std::ifstream in(folder / "p.json");
+    const json written = json::parse(in);
+    size_t found = 0;
+    for (const json& probe : written.at("probes"))
+        found += probe.at("position") == json({0.75, 1.5, 0.5}) || probe.at("position") == json({-0.5, 1.5, 0.25});
+    EXPECT_EQ(found, 2u);
+
+    // What a probe takes is what a bake of one says it takes.
+    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "one.json", "--grid", "1x1x1", "-q"}).exit, 0);
+    const json baked = jsonOf(sconceCommand({"bake", "cornell", "--probes", folder / "one.json", "-o", folder / "one.sconce",
+                                             "--resolution", "64", "--bounces", "0", "--json"}));
+    const json bytes = baked.at("bytes");
+    const uint64_t maps = bytes.at("total").get<uint64_t>() - bytes.at("index").get<uint64_t>();
+    EXPECT_EQ(jsonOf(place({"--resolution", "64", "--memory", std::to_string(maps * 4 + maps / 2)})).at("probes"), 4);
+    expectSentence(place({"--resolution", "64", "--memory", std::to_string(maps / 2)}), 2, "--memory");
+    expectSentence(place({"--resolution", "64", "--memory", std::to_string(maps + maps / 2)}), 2, "--pin");
+    writeText(folder / "pins.json", R"({"probes":[{"position":[0.25,"a",0.25]}]})");
+    expectSentence(place({"--count", "3"}), 3, "pins.json");
 }
 
 // The whole way once, small: place, bake, info, verify, trace, damage.
