@@ -57,7 +57,7 @@ vec3 shrunkenBall(const Tree& tree, const std::vector<Surfel>& surfels, const Su
 /// Cell of the surfel in cells of `side` metres, and which way it faces.
 std::array<int, 4> groupOf(const Surfel& surfel, vec3 low, float side)
 {
-    const glm::ivec3 cell = glm::ivec3(glm::floor((surfel.position - low) / side));
+    const glm::ivec3 cell = glm::max(glm::ivec3(glm::floor((surfel.position - low) / side)), glm::ivec3(0));
     const vec3 size = glm::abs(surfel.normal);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     return {cell.x, cell.y, cell.z, 2 * axis + (surfel.normal[axis] > 0.0f)};

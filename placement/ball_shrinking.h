@@ -13,7 +13,7 @@ namespace sconce
 /// centres, or, where a probe may not be there (in solid, too near a wall), the legal centre nearest to the centroid.
 /// Sources: Ma, Bae, Choi 2012, "3D medial axis point approximation using nearest neighbors and the normal field"; Wang et al. 2019,
 /// section 3.1 (joining by position and orientation).
-/// @param count  about how many; the size of the groups follows from it
+/// @param count  at most so many, but no fewer than six groups (one an orientation); the size of the groups follows from it
 std::vector<Candidate> ballCandidates(const Scene& scene, const LegalSpace& legal, size_t count, float clearance, uint64_t seed);
 
 } // namespace sconce

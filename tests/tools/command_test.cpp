@@ -1,5 +1,6 @@
 // The command as its users meet it: exit codes, sentences, help, JSON, files.
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
