@@ -13,8 +13,8 @@ namespace sconce
 
 struct OctreeSettings
 {
-    int voxels = 128; // finest voxels along the longest side of the bounds, 8..1024; time and memory grow with the square of it
-    int topShift = 3; // levels below the top grid, 1..6
+    int voxels = 128; // finest voxels along the longest side of the bounds, 8..256; time and memory grow with the square of it
+    int topShift = 2; // levels below the top grid, 1..6: a descent reads at most one texel more
 };
 
 /// The probes' cube-face distance maps, as the octree needs them. Word layout: shaders/shared/light_field.h.
@@ -25,12 +25,15 @@ struct ProbeMaps
     std::span<const uint32_t> distance;
 };
 
-/// Which probes see each voxel, ranked, collapsed and packed. A voxel's candidates are judged by the share of sample points in it that
-/// the probe sees (by its own maps) and its distance; each next rank prefers what the earlier ones do not see. Voxels that no probe sees
-/// take the lists of their nearest seen neighbours.
+/// Which probes see each voxel, ranked, collapsed and packed. A voxel's candidates are judged by what they see of it, by their own maps: 9
+/// points of its free space and up to 16 of the surfaces in it, each from its own side. Each next rank prefers what the earlier ones
+/// don't see; weights fall with distance and outside a probe's influence box. A voxel that no probe sees takes what makes it uniform with
+/// its neighbours. This is the CPU twin of the passes that runtime/octree_builder.h runs, one text (shaders/shared/octree_rank.h): the
+/// same bytes on every device and for any number of threads.
 /// Bounds: the box of what the probes see, without its outermost 1 % a side, so that a ground plane far larger than the place that
 /// matters costs no voxels; a point outside asks the nearest voxel.
-/// Errors: badArgument (no probes, more than 65,535, settings out of range), cancelled. Cost: voxels x probes x 9 map reads.
+/// Errors: badArgument (no probes, more than 65,535, settings out of range), cancelled. Cost: voxels x min(probes, 256) x 9 to 25 map reads
+/// at most, and 64 bytes of host memory a voxel; a search ends with the fourth probe that sees all of a voxel.
 /// Source: Wang et al. 2019, section 4.1 (influence by visibility, up to four probes a voxel).
 Result<Octree> buildOctree(const ProbeMaps& maps, const OctreeSettings& settings, const Progress& progress = {});
 

@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "octree_build.glsl"
+
+// Octree pass 1: every surface sample of the probes' maps goes to its voxel's slot; the smallest key stays, whatever the order of the
+// threads. Dispatch: ceil(samples / 64).
+layout(local_size_x = 64) in;
+
+void main()
+{
+    if (gl_GlobalInvocationID.x >= count) return;
+    uint number = first + gl_GlobalInvocationID.x;
+    vec3 position, normal;
+    if (!surfelOf(number, position, normal)) return;
+    uint slot = surfelSlot(position, normal);
+    if (slot != kNoSurfel) atomicMin(surfels.key[slot], number * kKeyFactor);
+}

@@ -1,0 +1,241 @@
+// Which probes a voxel lists: the judging and ranking that builds the octree. Shared text: GLSL, or C++ inside a struct that names `real`,
+// holds `build` (OctreeBuild) and defines uint distanceWord(uint), vec3 probeCentre(uint), uvec2 candidateOf(uint), uint surfelKey(uint) and
+// uvec2 listOf(ivec3 node, ivec3 size): a list of the level read, which has `size` nodes.
+//
+// The same bytes on every device: only sums, products, comparisons and integers, each rounded once (SCONCE_EXACT), and no division, root
+// or library function, whose last bits differ between devices.
+//
+// A voxel is judged at points of free space in it and at the surfaces in it, each from the side it is seen from: a probe below a floor
+// sees the free space of a voxel that the floor divides, but not the floor's upper side. After Wang et al. 2019, section 4.1.
+#ifdef __cplusplus
+#define SCONCE_EXACT
+#else
+#define SCONCE_EXACT precise
+#endif
+
+SCONCE_CONST int kFreeSamples = 9;        // centre and 8 points toward the corners
+SCONCE_CONST real kSpread = real(0.375);  // of those, voxels from the centre per axis
+SCONCE_CONST real kLift = real(0.1);      // voxels that a surface sample is judged in front of its surface
+SCONCE_CONST uint kSurfaceWeight = 2u;    // a surface sample counts as so many of free space: rays start at surfaces
+SCONCE_CONST uint kNewWeight = 8u;        // what the probes ranked before don't see counts so much more
+SCONCE_CONST int kMostSeeing = 64;        // candidates that see something of a voxel, at most; later ones weigh least
+SCONCE_CONST uint kKeyFactor = 2654435761u;  // odd: sample number -> key is one to one and mixes probes and places
+SCONCE_CONST uint kKeyInverse = 244002641u;  // kKeyFactor * kKeyInverse = 1 modulo 2^32
+
+/// 1 / x to 1e-6 for x from 1e-30 to 1e30: a guess from the bits of x, and Newton's iteration.
+SCONCE_FN real reciprocal(real x)
+{
+    SCONCE_EXACT real y = uintBitsToFloat(0x7ef311c7u - floatBitsToUint(x));
+    y = y * (real(2.0) - x * y);
+    y = y * (real(2.0) - x * y);
+    y = y * (real(2.0) - x * y);
+    return y;
+}
+
+/// 1 / sqrt(x) to 1e-5, in the same way.
+SCONCE_FN real reciprocalRoot(real x)
+{
+    SCONCE_EXACT real y = uintBitsToFloat(0x5f3759dfu - (floatBitsToUint(x) >> 1));
+    SCONCE_EXACT real half_ = real(0.5) * x;
+    y = y * (real(1.5) - half_ * y * y);
+    y = y * (real(1.5) - half_ * y * y);
+    return y;
+}
+
+/// unpackGradient of texel.h without its division.
+SCONCE_FN real exactGradient(uint bits)
+{
+    int value = int(bits & 0xffu);
+    if (value > 127) value -= 256;
+    SCONCE_EXACT real g = real(value * abs(value)) * (kGradientScale * real(1.0 / 16129.0));
+    return g;
+}
+
+SCONCE_FN uint faceWord(uint probe, int face, int x, int y)
+{
+    return distanceWord(probe * build.wordsPerProbe + uint(face) * (build.wordsPerProbe / 6u) + uint(y) * build.faceSize + uint(x));
+}
+
+/// Whether a probe's map shows nothing in front of a point.
+SCONCE_FN bool probeSees(uint probe, vec3 point)
+{
+    SCONCE_EXACT vec3 p = point - probeCentre(probe);
+    int face = dominantFace(p);
+    vec3 f = faceCoordinates(face, p);
+    if (!(f.z > real(1e-6))) return true; // the centre itself
+    SCONCE_EXACT real q = reciprocal(f.z);
+    SCONCE_EXACT real x = real(0.5) * real(build.faceSize) * (f.x * q + real(1.0));
+    SCONCE_EXACT real y = real(0.5) * real(build.faceSize) * (f.y * q + real(1.0));
+    int last = int(build.faceSize) - 1;
+    int ix = clamp(int(x), 0, last);
+    int iy = clamp(int(y), 0, last);
+    uint word = faceWord(probe, face, ix, iy);
+    SCONCE_EXACT real centre = halfToReal(word);
+    if (centre == real(0.0)) return true; // sky
+    SCONCE_EXACT real dx = x - real(ix) - real(0.5);
+    SCONCE_EXACT real dy = y - real(iy) - real(0.5);
+    SCONCE_EXACT real plane = centre * (real(1.0) + exactGradient(word >> 16) * dx + exactGradient(word >> 24) * dy);
+    SCONCE_EXACT real bound = plane * (real(1.0) - build.slack);
+    return q >= bound;
+}
+
+/// The surfel that surface sample `number` shows; false for sky. The normal is unit and faces the probe.
+SCONCE_FN bool surfelOf(uint number, SCONCE_OUT(vec3) position, SCONCE_OUT(vec3) normal)
+{
+    position = vec3(real(0.0), real(0.0), real(0.0));
+    normal = position;
+    uint x = build.sampleStep * (number % build.sampleSide) + build.sampleStep / 2u;
+    uint row = number / build.sampleSide;
+    uint y = build.sampleStep * (row % build.sampleSide) + build.sampleStep / 2u;
+    uint map = row / build.sampleSide;
+    int face = int(map % 6u);
+    uint probe = map / 6u;
+    uint word = faceWord(probe, face, int(x), int(y));
+    real q = halfToReal(word);
+    if (q == real(0.0)) return false;
+    SCONCE_EXACT real w = reciprocal(q);
+    SCONCE_EXACT real u = (real(x) + real(0.5)) * build.texelWidth - real(1.0);
+    SCONCE_EXACT real v = (real(y) + real(0.5)) * build.texelWidth - real(1.0);
+    SCONCE_EXACT vec3 seen = vec3(u * w, v * w, w);
+    SCONCE_EXACT vec3 at = probeCentre(probe) + faceDirection(face, seen);
+    position = at;
+    SCONCE_EXACT real gu = exactGradient(word >> 16) * real(0.5) * real(build.faceSize);
+    SCONCE_EXACT real gv = exactGradient(word >> 24) * real(0.5) * real(build.faceSize);
+    SCONCE_EXACT real gw = real(1.0) - u * gu - v * gv;
+    SCONCE_EXACT real length2 = gu * gu + gv * gv + gw * gw;
+    SCONCE_EXACT real scale = -reciprocalRoot(length2);
+    SCONCE_EXACT vec3 unit = vec3(gu * scale, gv * scale, gw * scale);
+    normal = faceDirection(face, unit);
+    return true;
+}
+
+/// Index of a surfel's slot, of its voxel, octant in the voxel and side; kNoSurfel outside the voxels.
+SCONCE_FN uint surfelSlot(vec3 position, vec3 normal)
+{
+    SCONCE_EXACT vec3 g = (position - vec3(build.low)) * build.inverseVoxel;
+    vec3 limit = vec3(build.count);
+    if (!(g.x >= real(0.0) && g.y >= real(0.0) && g.z >= real(0.0) && g.x < limit.x && g.y < limit.y && g.z < limit.z)) return kNoSurfel;
+    ivec3 twice = ivec3(int(real(2.0) * g.x), int(real(2.0) * g.y), int(real(2.0) * g.z));
+    ivec3 voxel = ivec3(twice.x >> 1, twice.y >> 1, twice.z >> 1);
+    int octant = (twice.x & 1) | ((twice.y & 1) << 1) | ((twice.z & 1) << 2);
+    int side = (dominantFace(normal) & 1) << 3;
+    uint index = uint(voxel.x) + uint(build.count.x) * (uint(voxel.y) + uint(build.count.y) * uint(voxel.z));
+    return index * kSurfelSlots + uint(octant | side);
+}
+
+/// A voxel's list: up to four probes, 16 bits each, best first, 0xffff where there is none. Each rank goes to the candidate that sees most,
+/// what the ranks before it don't see counting more, times its weight: nearness, and whether the voxel's region lies in its influence box.
+SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
+{
+    SCONCE_EXACT vec3 at = vec3(voxel) + real(0.5);
+    SCONCE_EXACT vec3 centre = vec3(build.low) + build.voxel * at;
+    uint index = uint(voxel.x) + uint(build.count.x) * (uint(voxel.y) + uint(build.count.y) * uint(voxel.z));
+    vec3 surfaces[kSurfelSlots];
+    vec3 normals[kSurfelSlots];
+    uint all = (1u << kFreeSamples) - 1u;
+    for (uint slot = 0u; slot < kSurfelSlots; ++slot)
+    {
+        uint key = surfelKey(index * kSurfelSlots + slot);
+        if (key == kNoSurfel) continue;
+        vec3 position;
+        if (!surfelOf(key * kKeyInverse, position, normals[slot])) continue;
+        SCONCE_EXACT real lift = kLift * build.voxel;
+        SCONCE_EXACT vec3 before = position + lift * normals[slot];
+        surfaces[slot] = before;
+        all |= 1u << (uint(kFreeSamples) + slot);
+    }
+    uint region = uint(voxel.x >> build.regionShift) +
+        uint(build.regions.x) * (uint(voxel.y >> build.regionShift) + uint(build.regions.y) * uint(voxel.z >> build.regionShift));
+    uint seenBits[kMostSeeing];
+    uvec2 seeing[kMostSeeing];
+    int found = 0;
+    int whole = 0;
+    // Candidates come in order of falling weight: once four see all samples, no later one can rank.
+    for (uint i = 0u; i < build.candidates && found < kMostSeeing && whole < kRanked; ++i)
+    {
+        uvec2 candidate = candidateOf(region * build.candidates + i);
+        uint bits = 0u;
+        for (int sample_ = 0; sample_ < kFreeSamples; ++sample_)
+        {
+            vec3 corner = vec3((sample_ & 1) != 0 ? real(1.0) : real(-1.0), (sample_ & 2) != 0 ? real(1.0) : real(-1.0),
+                (sample_ & 4) != 0 ? real(1.0) : real(-1.0));
+            if (sample_ == 8) corner = vec3(real(0.0), real(0.0), real(0.0));
+            SCONCE_EXACT real reach = kSpread * build.voxel;
+            SCONCE_EXACT vec3 point = centre + reach * corner;
+            if (probeSees(candidate.x, point)) bits |= 1u << sample_;
+        }
+        for (uint slot = 0u; slot < kSurfelSlots; ++slot)
+        {
+            uint bit = 1u << (uint(kFreeSamples) + slot);
+            if ((all & bit) == 0u) continue;
+            SCONCE_EXACT vec3 to = probeCentre(candidate.x) - surfaces[slot];
+            vec3 n = normals[slot];
+            SCONCE_EXACT real height = to.x * n.x + to.y * n.y + to.z * n.z;
+            if (height > real(0.0) && probeSees(candidate.x, surfaces[slot])) bits |= bit;
+        }
+        if (bits == 0u) continue;
+        seenBits[found] = bits;
+        seeing[found] = candidate;
+        ++found;
+        if (bits == all) ++whole;
+    }
+    uint open_ = (1u << kFreeSamples) - 1u;
+    uint covered = 0u;
+    uint ranked[kRanked];
+    for (int rank = 0; rank < kRanked; ++rank)
+    {
+        uint best = 0u;
+        int chosen = -1;
+        for (int i = 0; i < found; ++i)
+        {
+            uint bits = seenBits[i];
+            uint fresh = bits & ~covered;
+            uint gain = uint(bitCount(bits & open_)) + kSurfaceWeight * uint(bitCount(bits & ~open_)) +
+                kNewWeight * (uint(bitCount(fresh & open_)) + kSurfaceWeight * uint(bitCount(fresh & ~open_)));
+            uint score = gain * seeing[i].y;
+            if (score > best)
+            {
+                best = score;
+                chosen = i;
+            }
+        }
+        ranked[rank] = 0xffffu;
+        if (chosen >= 0)
+        {
+            ranked[rank] = seeing[chosen].x;
+            covered |= seenBits[chosen];
+            seenBits[chosen] = 0u;
+        }
+    }
+    return uvec2(ranked[0] | (ranked[1] << 16), ranked[2] | (ranked[3] << 16));
+}
+
+/// The list of a voxel, or, where no probe sees it, that of its first neighbour that has one.
+SCONCE_FN uvec2 filledList(ivec3 voxel, ivec3 size)
+{
+    uvec2 list = listOf(voxel, size);
+    for (int side = 0; side < 6 && list.x == kNoList; ++side)
+    {
+        ivec3 neighbour = voxel;
+        neighbour[side >> 1] += (side & 1) != 0 ? 1 : -1;
+        if (neighbour[side >> 1] < 0 || neighbour[side >> 1] >= size[side >> 1]) continue;
+        list = listOf(neighbour, size);
+    }
+    return list;
+}
+
+/// The list of a node from those of its eight children in a level of twice `size`: theirs when all that have one agree, none (both words
+/// kNoList) when none has, else (kNoList, 0): the node stays a node.
+SCONCE_FN uvec2 joinedList(ivec3 node, ivec3 size)
+{
+    uvec2 joined = uvec2(kNoList, kNoList);
+    for (int child = 0; child < 8; ++child)
+    {
+        uvec2 list = listOf(2 * node + ivec3(child & 1, (child >> 1) & 1, child >> 2), 2 * size);
+        if (list.x == kNoList && list.y == kNoList) continue;
+        bool none = joined.x == kNoList && joined.y == kNoList;
+        if (!none && (list.x != joined.x || list.y != joined.y)) return uvec2(kNoList, 0u);
+        joined = list;
+    }
+    return joined;
+}
