@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/field_space.h"
+#include "runtime/octree_builder.h"
 #include "runtime/probe_baker.h"
 #include "runtime/tracer_cpu.h"
 #include "svo/parallel.h"
@@ -111,7 +112,7 @@ struct Bake
     }
 
     Status directLight(ProbeBaker& baker);
-    Status index(const OctreeSettings& settings);
+    Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
     Status bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number);
 };
 
@@ -129,11 +130,15 @@ Status Bake::directLight(ProbeBaker& baker)
     return success();
 }
 
-Status Bake::index(const OctreeSettings& settings)
+Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
 {
     FieldData& seen = octahedral() ? cube : field;
     parallelFor(seen.probes.size(), [&](size_t i) { summariseProbe(seen, i); });
-    auto octree = buildOctree({seen.info, seen.probes, seen.distance}, settings, progress);
+    const ProbeMaps maps{seen.info, seen.probes, seen.distance};
+    auto octree = buildOctreeOnDevice(gpu, maps, settings, progress);
+    onDevice = bool(octree);
+    // All maps at once may be more than the device has beside the scene; the host gives the same bytes.
+    if (!octree && octree.error().code == ErrorCode::outOfMemory) octree = buildOctree(maps, settings, progress);
     if (!octree) return octree.error();
     if (octahedral()) field.probes = cube.probes;
     cube = FieldData();
@@ -217,7 +222,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         }
         if (auto status = bake.directLight(**baker); !status) return status.error();
         spent.probeSeconds = watch.lap();
-        if (auto status = bake.index(settings.octree); !status) return status.error();
+        if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
         spent.octreeSeconds = watch.lap();
         if (settings.bounces > 0) bake.direct = bake.field.radiance;
         for (uint32_t b = 1; b <= settings.bounces; ++b)

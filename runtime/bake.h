@@ -29,6 +29,7 @@ struct BakeReport
     double sceneSeconds = 0.0;  // upload and shadow maps
     double probeSeconds = 0.0;  // faces, direct light, chains, first irradiance
     double octreeSeconds = 0.0; // summaries and octree
+    bool octreeOnDevice = false; // else the maps didn't fit the device's memory and the host built it: the same bytes, later
     double bounceSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;
     uint32_t lights = 0; // delta lights, emitter samples and sky directions

@@ -14,7 +14,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SurfelKeys {
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Lists { uvec2 list[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Inputs
 {
-    OctreeBuild build;
+    OctreeBuild settings;
     MapWords distance;
     Probes probes;
     Candidates candidates; // [region][build.candidates] probe, weight
@@ -31,11 +31,15 @@ layout(scalar, push_constant) uniform Push
     ivec3 size; // nodes of the level written
 };
 
-#define build inputs.build
+OctreeBuild build; // a copy, read once: the passes that use it begin with readSettings()
+void readSettings() { build = inputs.settings; }
 uint distanceWord(uint index) { return inputs.distance.word[index]; }
 vec3 probeCentre(uint probe) { return inputs.probes.probe[probe].centre; }
-uvec2 candidateOf(uint index) { return inputs.candidates.candidate[index]; }
 uint surfelKey(uint slot) { return surfels.key[slot]; }
 uint indexIn(ivec3 at, ivec3 extent) { return uint(at.x) + uint(extent.x) * (uint(at.y) + uint(extent.y) * uint(at.z)); }
 uvec2 listOf(ivec3 node, ivec3 extent) { return from.list[indexIn(node, extent)]; }
+shared uvec2 kept[kMostCandidates]; // candidates of the workgroup's block
+shared uint keptCount;
+uint candidateCount() { return keptCount; }
+uvec2 candidateOf(uint i) { return kept[i]; }
 #include "shared/octree_rank.h"

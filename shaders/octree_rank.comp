@@ -2,15 +2,35 @@
 #extension GL_GOOGLE_include_directive : require
 #include "octree_build.glsl"
 
-// Octree pass 2: the list of every finest voxel, one thread a voxel, a block of 4x4x4 voxels a workgroup. Writes `to`.
-// Dispatch: blocks, `first` the first of them.
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+// Octree pass 2: the list of every finest voxel, one thread a voxel, a block of voxels a workgroup, which first culls the block's
+// candidates together. Writes `to`. Dispatch: blocks, `first` the first of them.
+layout(local_size_x = kBlock, local_size_y = kBlock, local_size_z = kBlock) in;
+
+shared uint mayBits[kMostCandidates / 32u];
 
 void main()
 {
-    uint block = first + gl_WorkGroupID.x;
-    uvec3 blocks = uvec3((build.count + 3) / 4);
-    ivec3 voxel = 4 * ivec3(block % blocks.x, block / blocks.x % blocks.y, block / blocks.x / blocks.y) + ivec3(gl_LocalInvocationID);
-    if (any(greaterThanEqual(voxel, build.count))) return;
-    to.list[indexIn(voxel, build.count)] = rankVoxel(voxel);
+    readSettings();
+    uint number = first + gl_WorkGroupID.x;
+    uvec3 blocks = uvec3((build.count + kBlock - 1) / kBlock);
+    ivec3 block = ivec3(number % blocks.x, number / blocks.x % blocks.y, number / blocks.x / blocks.y);
+    uint thread = gl_LocalInvocationIndex;
+    if (thread < kMostCandidates / 32u) mayBits[thread] = 0u;
+    barrier();
+    uint list = regionOf(kBlock * block) * build.candidates;
+    uint threads = uint(kBlock * kBlock * kBlock);
+    for (uint i = thread; i < build.candidates; i += threads)
+        if (mayBeSeen(inputs.candidates.candidate[list + i].x, block)) atomicOr(mayBits[i / 32u], 1u << (i % 32u));
+    barrier();
+    for (uint i = thread; i < build.candidates; i += threads)
+    {
+        uint place = bitCount(mayBits[i / 32u] & ((1u << (i % 32u)) - 1u));
+        for (uint word = 0u; word < i / 32u; ++word) place += bitCount(mayBits[word]);
+        bool keeps = (mayBits[i / 32u] >> (i % 32u) & 1u) != 0u;
+        if (keeps) kept[place] = inputs.candidates.candidate[list + i];
+        if (i + 1u == build.candidates) keptCount = place + uint(keeps);
+    }
+    barrier();
+    ivec3 voxel = kBlock * block + ivec3(gl_LocalInvocationID);
+    if (all(lessThan(voxel, build.count))) to.list[indexIn(voxel, build.count)] = rankVoxel(voxel);
 }

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 
 void main()
 {
+    readSettings();
     if (gl_GlobalInvocationID.x >= count) return;
     uint number = first + gl_GlobalInvocationID.x;
     vec3 position, normal;

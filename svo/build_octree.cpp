@@ -26,16 +26,19 @@ struct Text
     static constexpr uint kNoList = gpu::kNoList;
     static constexpr uint kSurfelSlots = gpu::kSurfelSlots;
     static constexpr int kRanked = gpu::kRanked;
+    static constexpr int kBlock = gpu::kBlock;
 
     const gpu::OctreeBuild& build;
     const ProbeMaps& maps;
     const OctreePlan& plan;
     const std::vector<uint32_t>& surfels;
     const std::vector<uvec2>& from;
+    std::vector<uvec2> kept = {}; // candidates of the block
 
     uint distanceWord(uint index) const { return maps.distance[index]; }
     vec3 probeCentre(uint probe) const { return maps.probes[probe].centre; }
-    uvec2 candidateOf(uint index) const { return plan.candidates[index]; }
+    uint candidateCount() const { return uint(kept.size()); }
+    uvec2 candidateOf(uint i) const { return kept[i]; }
     uint surfelKey(uint slot) const { return surfels[slot]; }
     uvec2 listOf(ivec3 node, ivec3 size) const
     {
@@ -67,9 +70,26 @@ void collectSurfels(const ProbeMaps& maps, const OctreePlan& plan, std::vector<u
                         if (slot == gpu::kNoSurfel) continue;
                         const uint32_t key = number * Text::kKeyFactor;
                         std::atomic_ref<uint32_t> kept(surfels[slot]);
-                        for (uint32_t held = kept.load(); key < held && !kept.compare_exchange_weak(held, key);) {}
+                        for (uint32_t held = kept.load(); key < held && !kept.compare_exchange_weak(held, key);)
+                        {
+                        }
                     }
                 });
+}
+
+/// Lists of a block's voxels, after culling its candidates together.
+void rankBlock(Text& text, ivec3 block, std::vector<uvec2>& lists)
+{
+    const gpu::OctreeBuild& build = text.build;
+    const size_t first = size_t(text.regionOf(gpu::kBlock * block)) * build.candidates;
+    text.kept.clear();
+    for (size_t i = first; i < first + build.candidates; ++i)
+        if (text.mayBeSeen(text.plan.candidates[i].x, block)) text.kept.push_back(text.plan.candidates[i]);
+    const ivec3 low = gpu::kBlock * block, high = glm::min(low + gpu::kBlock, ivec3(build.count));
+    for (int z = low.z; z < high.z; ++z)
+        for (int y = low.y; y < high.y; ++y)
+            for (int x = low.x; x < high.x; ++x)
+                lists[size_t(x) + size_t(build.count.x) * (size_t(y) + size_t(build.count.y) * size_t(z))] = text.rankVoxel({x, y, z});
 }
 
 ivec3 nodeAt(size_t index, ivec3 size)
@@ -104,15 +124,15 @@ Result<Octree> buildOctree(const ProbeMaps& maps, const OctreeSettings& settings
     const ivec3 count = plan->build.count;
     std::vector<uvec2> lists(plan->voxels());
     const std::vector<uvec2> none;
-    for (int z = 0; z < count.z; ++z)
+    const ivec3 blocks = (count + gpu::kBlock - 1) / gpu::kBlock;
+    for (int z = 0; z < blocks.z; ++z)
     {
-        if (!report(progress, "octree", double(z) / count.z)) return cancelled;
-        parallelFor(size_t(count.y),
-                    [&](size_t y)
+        if (!report(progress, "octree", double(z) / blocks.z)) return cancelled;
+        parallelFor(size_t(blocks.x) * size_t(blocks.y),
+                    [&](size_t i)
                     {
                         Text text{plan->build, maps, *plan, surfels, none};
-                        uvec2* row = lists.data() + size_t(count.x) * (y + size_t(count.y) * size_t(z));
-                        for (int x = 0; x < count.x; ++x) row[x] = text.rankVoxel({x, int(y), z});
+                        rankBlock(text, {int(i % size_t(blocks.x)), int(i / size_t(blocks.x)), z}, lists);
                     });
     }
     for (int step = 0; step < kFillSteps; ++step)

@@ -16,7 +16,6 @@ namespace
 using glm::ivec3;
 using glm::vec3;
 
-constexpr uint32_t kMostCandidates = 256;   // of a region
 constexpr uint32_t kMostSamples = 1u << 23; // surface samples of all maps
 constexpr int kRegionsAlong = 16;           // regions along the longest side, about
 constexpr double kOutsideInfluence = 2.0 / 3.0;
@@ -39,17 +38,18 @@ struct Text // the shared chart and texel functions, in float
 /// World box of what the probes see, its outermost share cut off on each side.
 void seenBounds(const ProbeMaps& maps, vec3& low, vec3& high)
 {
-    constexpr size_t kSamples = 24; // a side of a face
+    constexpr size_t kMost = 1u << 20; // samples of all probes, about
     constexpr double kCut = 0.01;
     maps_text::Text text;
     const size_t size = maps.info.faceSize, probes = maps.probes.size();
+    const size_t samples = std::clamp(size_t(std::sqrt(double(kMost) / double(6 * probes))), size_t(2), std::min<size_t>(24, size));
     std::array<std::vector<float>, 3> seen;
     for (size_t probe = 0; probe < probes; ++probe)
         for (size_t face = 0; face < 6; ++face)
-            for (size_t y = 0; y < kSamples; ++y)
-                for (size_t x = 0; x < kSamples; ++x)
+            for (size_t y = 0; y < samples; ++y)
+                for (size_t x = 0; x < samples; ++x)
                 {
-                    const size_t px = (2 * x + 1) * size / (2 * kSamples), py = (2 * y + 1) * size / (2 * kSamples);
+                    const size_t px = (2 * x + 1) * size / (2 * samples), py = (2 * y + 1) * size / (2 * samples);
                     const float q = text.halfToReal(
                         maps.distance[probe * maps.info.wordsPerProbe + face * (maps.info.wordsPerProbe / 6) + py * size + px]);
                     if (q == 0.0f) continue;
@@ -66,10 +66,11 @@ void seenBounds(const ProbeMaps& maps, vec3& low, vec3& high)
     for (int a = 0; a < 3; ++a)
     {
         if (seen[a].empty()) continue;
-        std::sort(seen[a].begin(), seen[a].end());
-        const size_t cut = size_t(kCut * double(seen[a].size()));
-        low[a] = std::min(low[a], seen[a][cut]);
-        high[a] = std::max(high[a], seen[a][seen[a].size() - 1 - cut]);
+        const ptrdiff_t cut = ptrdiff_t(kCut * double(seen[a].size()));
+        std::nth_element(seen[a].begin(), seen[a].begin() + cut, seen[a].end());
+        low[a] = std::min(low[a], seen[a][size_t(cut)]);
+        std::nth_element(seen[a].begin(), seen[a].end() - 1 - cut, seen[a].end());
+        high[a] = std::max(high[a], *(seen[a].end() - 1 - cut));
     }
     const vec3 margin = 0.01f * (high - low) + vec3(1e-3f);
     low = glm::max(low - margin, vec3(maps.info.sceneLow) - vec3(1e-3f));
@@ -100,8 +101,8 @@ void findCandidates(const ProbeMaps& maps, OctreePlan& plan)
                     const vec3 centre = vec3(build.low) + side * (vec3(region) + 0.5f);
                     std::vector<glm::uvec2> all(maps.probes.size());
                     for (size_t p = 0; p < all.size(); ++p) all[p] = {uint32_t(p), weightOf(maps.probes[p], centre, side, build.voxel)};
-                    std::partial_sort(all.begin(), all.begin() + build.candidates, all.end(), [](const glm::uvec2& a, const glm::uvec2& b)
-                                      { return a.y != b.y ? a.y > b.y : a.x < b.x; });
+                    std::partial_sort(all.begin(), all.begin() + build.candidates, all.end(),
+                                      [](const glm::uvec2& a, const glm::uvec2& b) { return a.y != b.y ? a.y > b.y : a.x < b.x; });
                     std::copy_n(all.begin(), build.candidates, plan.candidates.begin() + ptrdiff_t(i * build.candidates));
                 });
 }
@@ -138,10 +139,10 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     build.voxel = tree.voxel;
     build.inverseVoxel = 1.0f / tree.voxel;
     build.count = tree.topCells << tree.topShift;
-    build.regionShift = std::max(int(std::bit_width(unsigned(settings.voxels / kRegionsAlong))) - 1, 1);
+    build.regionShift = std::max(int(std::bit_width(unsigned(settings.voxels / kRegionsAlong))) - 1, 2); // whole blocks
     build.regions = ((build.count - 1) >> build.regionShift) + 1;
     build.probeCount = uint32_t(maps.probes.size());
-    build.candidates = std::min(build.probeCount, kMostCandidates);
+    build.candidates = std::min(build.probeCount, gpu::kMostCandidates);
     build.faceSize = maps.info.faceSize;
     build.wordsPerProbe = maps.info.wordsPerProbe;
     build.sampleStep = 1;
@@ -151,6 +152,7 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     build.sampleSide = build.faceSize / build.sampleStep;
     plan.samples = uint32_t(samplesAt(build.sampleStep));
     build.texelWidth = 2.0f / float(build.faceSize);
+    build.topLevel = maps.info.topLevel;
     build.slack = 1.0f / float(build.faceSize);
     findCandidates(maps, plan);
     return plan;

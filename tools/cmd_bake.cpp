@@ -51,6 +51,7 @@ int runBake(const BakeOptions& options, const Context& context)
                                  {"probes", report.probeSeconds},
                                  {"octree", report.octreeSeconds},
                                  {"bounces", report.bounceSeconds}};
+        json["octree_on_device"] = report.octreeOnDevice;
         addCost(json, watch);
         print(json);
     }

@@ -5,6 +5,8 @@
 SCONCE_STRUCTS_BEGIN
 
 const uint kSurfelSlots = 16u; // surface samples a voxel keeps: one an octant of the voxel and side of the surface
+const int kBlock = 4;                // voxels a side of the blocks whose candidates are culled together; a region holds whole blocks
+const uint kMostCandidates = 256u;   // of a region
 const uint kNoSurfel = 0xffffffffu;
 const uint kNoList = 0xffffffffu; // first word of a voxel that no probe sees (second word the same), or of a node whose children differ (0)
 
@@ -25,8 +27,10 @@ struct OctreeBuild
     uint sampleSide;     // samples a side of a face
     float texelWidth;    // 2 / faceSize
     float slack;         // of a visibility test, share of the distance
+    uint topLevel;       // coarsest level of a face's chain
+    uint unused;
 };
-SCONCE_CHECK_SIZE(OctreeBuild, 80);
+SCONCE_CHECK_SIZE(OctreeBuild, 88);
 
 SCONCE_STRUCTS_END
 #endif

@@ -1,5 +1,6 @@
 // Which probes a voxel lists: the judging and ranking that builds the octree. Shared text: GLSL, or C++ inside a struct that names `real`,
-// holds `build` (OctreeBuild) and defines uint distanceWord(uint), vec3 probeCentre(uint), uvec2 candidateOf(uint), uint surfelKey(uint) and
+// holds `build` (OctreeBuild) and defines uint distanceWord(uint), vec3 probeCentre(uint), uint surfelKey(uint),
+// uint candidateCount() and uvec2 candidateOf(uint) (those of the voxel's block: of its region, those that mayBeSeen leaves, in order) and
 // uvec2 listOf(ivec3 node, ivec3 size): a list of the level read, which has `size` nodes.
 //
 // The same bytes on every device: only sums, products, comparisons and integers, each rounded once (SCONCE_EXACT), and no division, root
@@ -123,6 +124,54 @@ SCONCE_FN uint surfelSlot(vec3 position, vec3 normal)
     return index * kSurfelSlots + uint(octant | side);
 }
 
+SCONCE_FN uint regionOf(ivec3 voxel)
+{
+    return uint(voxel.x >> build.regionShift) +
+        uint(build.regions.x) * (uint(voxel.y >> build.regionShift) + uint(build.regions.y) * uint(voxel.z >> build.regionShift));
+}
+
+/// False only when a probe sees nothing of a block of voxels (and half a voxel around it): its nearest point lies behind the farthest surface
+/// of all texels that it covers, by the minima of the chain. It saves time and changes no list.
+SCONCE_FN bool mayBeSeen(uint probe, ivec3 block)
+{
+    real nearest = real(0.0); // largest q of the block
+    vec2 low = vec2(real(build.faceSize), real(build.faceSize));
+    vec2 high = vec2(real(0.0), real(0.0));
+    int face = -1;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        vec3 at = vec3(kBlock * block) - real(0.5) + real(kBlock + 1) * vec3(real(corner & 1), real((corner >> 1) & 1), real(corner >> 2));
+        vec3 p = vec3(build.low) + build.voxel * at - probeCentre(probe);
+        int own = dominantFace(p);
+        if (corner > 0 && own != face) return true;
+        face = own;
+        vec3 f = faceCoordinates(face, p);
+        if (!(f.z > real(1e-6))) return true;
+        real q = reciprocal(f.z);
+        vec2 pixel = vec2(real(0.5) * real(build.faceSize) * (f.x * q + real(1.0)), real(0.5) * real(build.faceSize) * (f.y * q + real(1.0)));
+        nearest = max(nearest, q);
+        low = min(low, pixel);
+        high = max(high, pixel);
+    }
+    int last = int(build.faceSize) - 1;
+    ivec2 first = ivec2(clamp(int(low.x - real(0.5)), 0, last), clamp(int(low.y - real(0.5)), 0, last));
+    ivec2 end = ivec2(clamp(int(high.x + real(0.5)), 0, last), clamp(int(high.y + real(0.5)), 0, last));
+    uint level = 2u;
+    uint offset = build.faceSize * build.faceSize;
+    while (level < build.topLevel && max((end.x >> level) - (first.x >> level), (end.y >> level) - (first.y >> level)) > 3)
+    {
+        offset += (build.faceSize >> level) * (build.faceSize >> level);
+        level += 2u;
+    }
+    if (level > build.topLevel) return true; // the faces are too small for a chain
+    uint farthest = 0xffffu; // halves of one sign order as integers
+    for (int y = first.y >> level; y <= end.y >> level; ++y)
+        for (int x = first.x >> level; x <= end.x >> level; ++x)
+            farthest = min(farthest, distanceWord(probe * build.wordsPerProbe + uint(face) * (build.wordsPerProbe / 6u) + offset +
+                uint(y) * (build.faceSize >> level) + uint(x)) >> 16);
+    return nearest >= halfToReal(farthest) * (real(0.999) - build.slack);
+}
+
 /// A voxel's list: up to four probes, 16 bits each, best first, 0xffff where there is none. Each rank goes to the candidate that sees most,
 /// what the ranks before it don't see counting more, times its weight: nearness, and whether the voxel's region lies in its influence box.
 SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
@@ -132,28 +181,30 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
     uint index = uint(voxel.x) + uint(build.count.x) * (uint(voxel.y) + uint(build.count.y) * uint(voxel.z));
     vec3 surfaces[kSurfelSlots];
     vec3 normals[kSurfelSlots];
-    uint all = (1u << kFreeSamples) - 1u;
+    uint samples = 0u;
     for (uint slot = 0u; slot < kSurfelSlots; ++slot)
     {
         uint key = surfelKey(index * kSurfelSlots + slot);
         if (key == kNoSurfel) continue;
         vec3 position;
-        if (!surfelOf(key * kKeyInverse, position, normals[slot])) continue;
+        vec3 normal;
+        if (!surfelOf(key * kKeyInverse, position, normal)) continue;
         SCONCE_EXACT real lift = kLift * build.voxel;
-        SCONCE_EXACT vec3 before = position + lift * normals[slot];
-        surfaces[slot] = before;
-        all |= 1u << (uint(kFreeSamples) + slot);
+        SCONCE_EXACT vec3 before = position + lift * normal;
+        surfaces[samples] = before;
+        normals[samples] = normal;
+        ++samples;
     }
-    uint region = uint(voxel.x >> build.regionShift) +
-        uint(build.regions.x) * (uint(voxel.y >> build.regionShift) + uint(build.regions.y) * uint(voxel.z >> build.regionShift));
+    uint all = (1u << (uint(kFreeSamples) + samples)) - 1u;
     uint seenBits[kMostSeeing];
     uvec2 seeing[kMostSeeing];
     int found = 0;
     int whole = 0;
     // Candidates come in order of falling weight: once four see all samples, no later one can rank.
-    for (uint i = 0u; i < build.candidates && found < kMostSeeing && whole < kRanked; ++i)
+    uint candidates = candidateCount();
+    for (uint c = 0u; c < candidates && found < kMostSeeing && whole < kRanked; ++c)
     {
-        uvec2 candidate = candidateOf(region * build.candidates + i);
+        uvec2 candidate = candidateOf(c);
         uint bits = 0u;
         for (int sample_ = 0; sample_ < kFreeSamples; ++sample_)
         {
@@ -164,14 +215,12 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
             SCONCE_EXACT vec3 point = centre + reach * corner;
             if (probeSees(candidate.x, point)) bits |= 1u << sample_;
         }
-        for (uint slot = 0u; slot < kSurfelSlots; ++slot)
+        for (uint i = 0u; i < samples; ++i)
         {
-            uint bit = 1u << (uint(kFreeSamples) + slot);
-            if ((all & bit) == 0u) continue;
-            SCONCE_EXACT vec3 to = probeCentre(candidate.x) - surfaces[slot];
-            vec3 n = normals[slot];
+            SCONCE_EXACT vec3 to = probeCentre(candidate.x) - surfaces[i];
+            vec3 n = normals[i];
             SCONCE_EXACT real height = to.x * n.x + to.y * n.y + to.z * n.z;
-            if (height > real(0.0) && probeSees(candidate.x, surfaces[slot])) bits |= bit;
+            if (height > real(0.0) && probeSees(candidate.x, surfaces[i])) bits |= 1u << (uint(kFreeSamples) + i);
         }
         if (bits == 0u) continue;
         seenBits[found] = bits;

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/field_space.h"
-#include "runtime/tracer_cpu.h"
+#include "tests/support/divided_box.h"
 
 namespace sconce
 {
@@ -15,47 +14,7 @@ namespace
 {
 
 using glm::vec3;
-
-/// Two probes in a box of [-1,1]^3 that a wall at x = 0 (hole-free) divides: probe 0 sees x < 0, probe 1 sees x > 0. Closed-form maps.
-FieldData dividedBox(uint32_t faceSize, int copies = 1)
-{
-    FieldData field;
-    Bounds bounds;
-    bounds.add(vec3(-1.0f));
-    bounds.add(vec3(1.0f));
-    field.info = fieldSpace(bounds);
-    field.info.chart = gpu::kChartCube;
-    field.info.faceSize = faceSize;
-    field.info.topLevel = coarsestLevel(faceSize);
-    field.info.wordsPerProbe = distanceWordsPerProbe(gpu::kChartCube, faceSize);
-    const int probes = 2 * copies;
-    field.info.probeCount = uint32_t(probes);
-    field.probes.resize(size_t(probes));
-    field.distance.resize(size_t(field.info.wordsPerProbe) * size_t(probes));
-    twin::LightFieldTwin<float> text(field, {});
-    for (int probe = 0; probe < probes; ++probe)
-    {
-        const float side = probe % 2 == 0 ? -1.0f : 1.0f;
-        const vec3 centre(0.5f * side, 0.05f * float(probe / 2), 0.0f);
-        const vec3 low(side < 0 ? -1.0f : 0.0f, -1.0f, -1.0f), high(side < 0 ? 0.0f : 1.0f, 1.0f, 1.0f);
-        field.probes[size_t(probe)] = {};
-        field.probes[size_t(probe)].centre = (centre - field.info.origin) / field.info.scale;
-        for (int face = 0; face < 6; ++face)
-            for (uint32_t i = 0; i < faceSize * faceSize; ++i)
-            {
-                const float u = 2.0f * (float(i % faceSize) + 0.5f) / float(faceSize) - 1.0f,
-                            v = 2.0f * (float(i / faceSize) + 0.5f) / float(faceSize) - 1.0f;
-                const vec3 d = text.faceDirection(face, vec3(u, v, 1.0f));
-                float w = 1e9f;
-                for (int a = 0; a < 3; ++a)
-                    if (d[a] != 0.0f) w = std::min(w, ((d[a] > 0.0f ? high[a] : low[a]) - centre[a]) / d[a]);
-                field.distance[size_t(probe) * field.info.wordsPerProbe + size_t(face) * (field.info.wordsPerProbe / 6) + i] =
-                    text.packTexel(field.info.scale / w, 0.0f, 0.0f);
-            }
-        summariseProbe(field, size_t(probe));
-    }
-    return field;
-}
+using testing_support::dividedBox;
 
 vec3 toField(const FieldData& field, vec3 world)
 {
@@ -116,25 +75,51 @@ TEST(BuildOctree, DescentEqualsTheUncollapsedVoxels)
     }
 }
 
-TEST(BuildOctree, MoreThan255ProbesTake16Bits)
+/// Every list in the box names probes of the point's own side, and many different ones.
+void expectListsOfOwnSide(const FieldData& field, size_t different)
 {
-    FieldData field = dividedBox(16, 130);
-    attachOctree(field, *buildOctree({field.info, field.probes, field.distance}, {.voxels = 16}));
-    EXPECT_EQ(field.info.marker, 65535u);
     twin::LightFieldTwin<float> text(field, {});
     int reads = 0;
     std::set<uint32_t> seen;
     for (float y = -0.9f; y < 0.9f; y += 0.05f)
-    {
-        const glm::uvec4 ranked = text.rankedProbesAt(toField(field, vec3(-0.5f, y, 0.0f)), reads);
-        for (int k = 0; k < 4; ++k)
+        for (const float x : {-0.5f, 0.5f})
         {
-            ASSERT_LT(ranked[k], 260u);
-            EXPECT_EQ(ranked[k] % 2, 0u) << "only probes on this side of the wall see the point";
-            seen.insert(ranked[k]);
+            const glm::uvec4 ranked = text.rankedProbesAt(toField(field, vec3(x, y, 0.0f)), reads);
+            for (int k = 0; k < 4; ++k)
+            {
+                ASSERT_LT(ranked[k], field.info.probeCount);
+                if (field.info.probeCount > 1)
+                {
+                    EXPECT_EQ(ranked[k] % 2, x < 0.0f ? 0u : 1u) << "only probes on this side see the point";
+                }
+                seen.insert(ranked[k]);
+            }
         }
+    EXPECT_GE(seen.size(), different);
+}
+
+TEST(BuildOctree, From1To65535ProbesTheLastOf8BitsIs255)
+{
+    for (const uint32_t probes : {1u, 255u, 256u, 65535u})
+    {
+        SCOPED_TRACE(probes);
+        FieldData field = dividedBox(8, probes);
+        attachOctree(field, *buildOctree({field.info, field.probes, field.distance}, {.voxels = 16}));
+        EXPECT_EQ(field.info.marker, probes <= 255 ? 255u : 65535u);
+        EXPECT_EQ(field.octree.bytes(), field.octree.texels.size() / 4 * (probes <= 255 ? 4 : 8));
+        expectListsOfOwnSide(field, std::min(probes, 10u));
     }
-    EXPECT_GT(seen.size(), 4u);
+}
+
+TEST(BuildOctree, EqualBricksAreStoredOnce)
+{
+    // The wall lies between voxels of the same two lists over and over: a handful of bricks serve the whole tree.
+    FieldData field = dividedBox(64);
+    const auto tree = buildOctree({field.info, field.probes, field.distance}, {.voxels = 64, .topShift = 2});
+    ASSERT_TRUE(tree);
+    const size_t top = size_t((tree->topCells.x + 1) / 2) * size_t((tree->topCells.y + 1) / 2) * size_t((tree->topCells.z + 1) / 2);
+    EXPECT_GT(tree->nodes, 100u);
+    EXPECT_LT(size_t(tree->bricks.x) * tree->bricks.y * tree->bricks.z, top + 100);
 }
 
 TEST(BuildOctree, SameBytesTwice)
