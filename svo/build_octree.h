@@ -13,7 +13,9 @@ namespace sconce
 
 struct OctreeSettings
 {
-    int voxels = 128; // finest voxels along the longest side of the bounds, 8..256; time and memory grow with the square of it
+    // Finest voxels along the longest side of the bounds, 8..256; time and memory grow with the square of it. 0: 128 up to 54 probes, then
+    // growing with the root of their number to 256, so that the bytes a probe stay what they are.
+    int voxels = 0;
     int topShift = 2; // levels below the top grid, 1..6: a descent reads at most one texel more
 };
 
@@ -33,7 +35,7 @@ struct ProbeMaps
 /// Bounds: the box of what the probes see, without its outermost 1 % a side, so that a ground plane far larger than the place that
 /// matters costs no voxels; a point outside asks the nearest voxel.
 /// Errors: badArgument (no probes, more than 65,535, settings out of range), cancelled. Cost: voxels x min(probes, 256) x 9 to 25 map reads
-/// at most, and 64 bytes of host memory a voxel; a search ends with the fourth probe that sees all of a voxel.
+/// at most, and 80 bytes of host memory a voxel; a search ends with the fourth probe that sees all of a voxel.
 /// Source: Wang et al. 2019, section 4.1 (influence by visibility, up to four probes a voxel).
 Result<Octree> buildOctree(const ProbeMaps& maps, const OctreeSettings& settings, const Progress& progress = {});
 

@@ -107,13 +107,19 @@ void findCandidates(const ProbeMaps& maps, OctreePlan& plan)
                 });
 }
 
+int voxelsFor(const OctreeSettings& settings, size_t probes)
+{
+    constexpr double kProbes = 54.0; // of Sponza, whose index of 128 voxels takes 13 kB a probe
+    return settings.voxels != 0 ? settings.voxels : std::clamp(int(128.0 * std::sqrt(double(probes) / kProbes)), 128, 256);
+}
+
 std::string argumentFault(const ProbeMaps& maps, const OctreeSettings& settings)
 {
     if (maps.probes.empty()) return "an octree needs at least one probe; place some first";
     if (maps.probes.size() > 65535)
         return std::to_string(maps.probes.size()) + " probes are more than the 65535 an octree can index; place fewer";
-    if (settings.voxels < 8 || settings.voxels > 256 || settings.topShift < 1 || settings.topShift > 6)
-        return "octree settings: voxels " + std::to_string(settings.voxels) + " must be 8..256 and topShift " +
+    if ((settings.voxels != 0 && settings.voxels < 8) || settings.voxels > 256 || settings.topShift < 1 || settings.topShift > 6)
+        return "octree settings: voxels " + std::to_string(settings.voxels) + " must be 0 or 8..256 and topShift " +
                std::to_string(settings.topShift) + " 1..6";
     if (maps.info.chart != gpu::kChartCube) return "the octree judges visibility by cube-face maps; bake with the cube chart";
     return {};
@@ -128,7 +134,8 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     Octree& tree = plan.tree;
     seenBounds(maps, tree.boundsLow, tree.boundsHigh);
     const vec3 size = tree.boundsHigh - tree.boundsLow;
-    tree.voxel = std::max({size.x, size.y, size.z}) / float(settings.voxels);
+    const int voxels = voxelsFor(settings, maps.probes.size());
+    tree.voxel = std::max({size.x, size.y, size.z}) / float(voxels);
     tree.topShift = settings.topShift;
     tree.topCells = glm::max(ivec3(glm::ceil(size / (tree.voxel * float(1 << tree.topShift)) - 1e-4f)), ivec3(1));
     tree.boundsHigh = tree.boundsLow + tree.voxel * float(1 << tree.topShift) * vec3(tree.topCells);
@@ -139,7 +146,7 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     build.voxel = tree.voxel;
     build.inverseVoxel = 1.0f / tree.voxel;
     build.count = tree.topCells << tree.topShift;
-    build.regionShift = std::max(int(std::bit_width(unsigned(settings.voxels / kRegionsAlong))) - 1, 2); // whole blocks
+    build.regionShift = std::max(int(std::bit_width(unsigned(voxels / kRegionsAlong))) - 1, 2); // whole blocks
     build.regions = ((build.count - 1) >> build.regionShift) + 1;
     build.probeCount = uint32_t(maps.probes.size());
     build.candidates = std::min(build.probeCount, gpu::kMostCandidates);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "svo/octree_plan.h"
 #include "tests/support/divided_box.h"
 
 namespace sconce
@@ -120,6 +121,18 @@ TEST(BuildOctree, EqualBricksAreStoredOnce)
     const size_t top = size_t((tree->topCells.x + 1) / 2) * size_t((tree->topCells.y + 1) / 2) * size_t((tree->topCells.z + 1) / 2);
     EXPECT_GT(tree->nodes, 100u);
     EXPECT_LT(size_t(tree->bricks.x) * tree->bricks.y * tree->bricks.z, top + 100);
+}
+
+TEST(BuildOctree, ItsVoxelsGrowWithTheRootOfTheProbesUnlessSaid)
+{
+    const auto voxels = [](uint32_t probes, int asked)
+    {
+        const FieldData field = dividedBox(8, probes);
+        return planOctree({field.info, field.probes, field.distance}, {.voxels = asked})->build.count.y;
+    };
+    EXPECT_NEAR(voxels(1, 0), 128, 4); // whole top cells
+    EXPECT_NEAR(voxels(90, 0), 165, 4);
+    EXPECT_NEAR(voxels(90, 16), 16, 4);
 }
 
 TEST(BuildOctree, SameBytesTwice)
