@@ -91,22 +91,29 @@ Bounds fillBox(const Bounds& scene)
     return box;
 }
 
+template <class Visit> void forNeighbours(const DistanceField& field, size_t at, const Visit& visit)
+{
+    const size_t stride[3] = {1, size_t(field.size.x), size_t(field.size.x) * size_t(field.size.y)};
+    const glm::ivec3 cell = field.cell(at);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (cell[axis] > 0) visit(at - stride[axis]);
+        if (cell[axis] + 1 < field.size[axis]) visit(at + stride[axis]);
+    }
+}
+
 /// Visits the cells joined to the open ones through faces, of those that `enters` lets in; `enters` has to mark what it lets in.
 template <class Enters> void flood(const DistanceField& field, std::vector<uint32_t>& open, const Enters& enters)
 {
-    const size_t stride[3] = {1, size_t(field.size.x), size_t(field.size.x) * size_t(field.size.y)};
     while (!open.empty())
     {
         const size_t at = open.back();
         open.pop_back();
-        const glm::ivec3 cell = field.cell(at);
-        for (int axis = 0; axis < 3; ++axis)
-            for (int side = -1; side <= 1; side += 2)
-            {
-                if (cell[axis] + side < 0 || cell[axis] + side >= field.size[axis]) continue;
-                const size_t next = side < 0 ? at - stride[axis] : at + stride[axis];
-                if (enters(next)) open.push_back(uint32_t(next));
-            }
+        forNeighbours(field, at,
+                      [&](size_t next)
+                      {
+                          if (enters(next)) open.push_back(uint32_t(next));
+                      });
     }
 }
 
@@ -344,22 +351,50 @@ Result<Seeds> findSeeds(const Scene& scene, const Visibility& visibility, const 
     return seeds;
 }
 
-/// Of the kept cells, only those joined to a seed through kept cells: alcoves of the roof are as enclosed as a room.
-void keepJoined(FreeSpace& space, const std::vector<uint32_t>& seeds)
+/// Of the reached cells, those that a ball gets to from a seed, and what lies around its way. Hollow walls and floors of two-sided surfaces
+/// are joined to rooms through the cracks that modellers leave, and look as enclosed as a room.
+void keepPassable(const DistanceField& field, std::vector<uint8_t>& reached, const std::vector<uint32_t>& seeds, float radius)
 {
-    constexpr uint8_t kJoined = 2;
-    std::vector<uint32_t> open;
+    constexpr uint8_t kPassed = 2;
+    std::vector<uint32_t> open, around;
     for (uint32_t at : seeds)
-        if (space.reachable[at] == 1) space.reachable[at] = kJoined, open.push_back(at);
-    if (open.empty()) return;
-    flood(space.field, open,
-          [&space](size_t at)
+        if (reached[at] == 1 && field.distance[at] >= radius) reached[at] = kPassed, open.push_back(at);
+    around = open;
+    flood(field, open,
+          [&](size_t at)
           {
-              if (space.reachable[at] != 1) return false;
-              space.reachable[at] = kJoined;
+              if (reached[at] != 1 || field.distance[at] < radius) return false;
+              reached[at] = kPassed;
+              around.push_back(uint32_t(at));
               return true;
           });
-    for (uint8_t& kept : space.reachable) kept = kept == kJoined;
+    // Steps through faces: three radii reach into the corner of three walls.
+    for (int step = int(std::ceil(3.0f * radius / field.voxel)); step > 0; --step)
+    {
+        open.clear();
+        for (uint32_t at : around)
+            forNeighbours(field, at,
+                          [&](size_t next)
+                          {
+                              if (reached[next] != 1) return;
+                              reached[next] = kPassed;
+                              open.push_back(uint32_t(next));
+                          });
+        std::swap(around, open);
+    }
+    for (uint8_t& kept : reached) kept = kept == kPassed;
+}
+
+/// Half the width of the least way from the seeds, but no more than lets a seed out of its place.
+float passageRadius(const FreeSpace& space, const std::vector<uint32_t>& seeds)
+{
+    double sum = 0.0;
+    size_t cells = 0;
+    for (size_t at = 0; at < space.field.cells(); ++at)
+        if (space.reachable[at]) sum += double(space.field.distance[at]), ++cells;
+    float widest = 0.0f;
+    for (uint32_t at : seeds) widest = std::max(widest, space.field.distance[at]);
+    return cells ? std::min({kPassage * float(sum / double(cells)), kWidestPassage, 0.9f * widest}) : 0.0f;
 }
 
 /// Marks the cells of the given regions and keeps the enclosed ones.
@@ -370,8 +405,14 @@ void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Vi
     space.reachable.assign(space.field.cells(), 0);
     for (size_t at = 0; at < space.field.cells(); ++at)
         if (regions.of[at] != kNoRegion) space.reachable[at] = chosen[regions.of[at]];
+    std::vector<uint8_t> reached = space.reachable;
     keepEnclosed(space, seeds.indoors ? kIndoorEnclosedShare : kEnclosedShare, visibility);
-    if (seeds.indoors) keepJoined(space, seeds.cells);
+    if (seeds.indoors) reached = space.reachable; // only through kept cells: alcoves of the roof are as enclosed as a room
+    if (const float radius = passageRadius(space, seeds.cells); radius > 0.0f)
+    {
+        keepPassable(space.field, reached, seeds.cells, radius);
+        for (size_t at = 0; at < reached.size(); ++at) space.reachable[at] = space.reachable[at] && reached[at];
+    }
     finish(space);
 }
 

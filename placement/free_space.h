@@ -21,6 +21,8 @@ class RandomStream;
 ///    surface, however thin, can't both be free, so walls thinner than a cell still separate.
 /// 2. Free cells are joined through faces. Those joined to a seed count: the `--inside` points, else the cameras, else the region with the
 ///    most enclosed volume.
+///    Of what is joined to points and cameras, those places count that a ball of kPassage gets to, and what lies around its way: hollow
+///    walls and floors of two-sided surfaces are joined to rooms through cracks.
 /// 3. Open scenes: the fill ends at the scene's box, raised a little. Of what it reaches, a cell is kept when it is enclosed: at least
 ///    kEnclosedShare of its rays between the horizon and 60 degrees above it hit something, and kGroundShare of those within 45 degrees of
 ///    straight down; and when not most of its hits are on the backs of single-sided surfaces (the underside of a terrain). So courts,
@@ -50,6 +52,8 @@ struct FreeSpace
     vec3 randomPoint(RandomStream& random) const;
 };
 
+inline constexpr float kPassage = 0.25f;       // of the mean distance to surfaces: half the width of the least way from a seed,
+inline constexpr float kWidestPassage = 0.3f;  // metres, but no more than this: a person, so that doors stay open in a cathedral
 inline constexpr float kBlocked = 0.51f;       // cells; a little above one half, for rounding
 inline constexpr float kEnclosedShare = 0.12f; // of the rays between the horizon and 60 degrees up
 inline constexpr float kIndoorEnclosedShare = 0.6f;
