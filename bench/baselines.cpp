@@ -116,9 +116,9 @@ float baselineOffset(Baseline baseline)
     return baseline == Baseline::b0 ? 0.0f : 0.01f;
 }
 
-uint32_t bestLowFactor(Baseline baseline, uint32_t size)
+uint32_t bestLowFactor(Baseline baseline)
 {
-    return baseline != Baseline::b0 && size <= 512 ? 8 : gpu::kLowFactor;
+    return baseline == Baseline::b0 ? 16 : 8;
 }
 
 Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t lowFactor)
@@ -126,7 +126,7 @@ Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t low
     if (const std::string missing = whatIsMissing(field, baseline); !missing.empty())
         return Error{ErrorCode::badInput, "The light field of scene '" + field.sceneName + "' " + missing + "."};
     if (baseline == Baseline::wang) return wangField(field);
-    const uint32_t factor = lowFactor ? lowFactor : bestLowFactor(baseline, field.info.faceSize);
+    const uint32_t factor = lowFactor ? lowFactor : bestLowFactor(baseline);
     if (!std::has_single_bit(factor) || field.info.faceSize % factor != 0)
         return Error{ErrorCode::badArgument, "A low factor of " + std::to_string(factor) + " does not divide maps of " +
                                                  std::to_string(field.info.faceSize) + " texels; give 8, 16 or 32"};

@@ -30,9 +30,9 @@ std::optional<Baseline> baselineNamed(std::string_view name);
 /// hand-offs are the start surface met again; 0 for b0, whose defect that is.
 float baselineOffset(Baseline baseline);
 
-/// Texels a side that a texel of B0's and B0+'s low-resolution map covers, fastest for a map of `size` texels a side
-/// (docs/measurements.md).
-uint32_t bestLowFactor(uint32_t size);
+/// Texels a side that a texel of the low-resolution map covers: the published 16 for b0, for the others what is fastest on maps of 256 to
+/// 1024 texels a side (docs/measurements.md).
+uint32_t bestLowFactor(Baseline baseline);
 
 /// What an opponent reads, made from a baked field: b0 and b0plus want octahedral maps on a grid (b0: of power-of-two counts),
 /// b0plus-octree octahedral maps, wang cube faces, from which it makes octahedral maps of the faces' size and their chain
