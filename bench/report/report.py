@@ -49,7 +49,7 @@ def table(r):
         ("unresolved, %", lambda j: 100.0 * j["unresolved"]),
         ("distance reads a ray", lambda j: j["distance_reads"]["mean"]),
         ("hand-offs a ray", lambda j: j["handoffs_mean"]),
-        ("trace of 100,000 rays in the order of pictures, ms", lambda j: j["coherent_ms"]["median"]),
+        ("trace of 50,000 rays in the order of pictures, ms", lambda j: j["coherent_ms"]["median"]),
     ]
     return rows + [(name, figure(get(r["rays"][0])), figure(get(r["rays"][1]))) for name, get in rays]
 
