@@ -34,13 +34,13 @@ struct PlaceSettings
     std::vector<Pin> pins;    // positions that the user decides; not with a grid. Kept ones count as probes of `count`, added ones don't
     uint64_t seed = 1;        // of every random choice; same scene, settings and seed: same bytes
     float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
-    uint32_t voxels = kDefaultVoxels;   // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
-    uint32_t candidates = 2800;         // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
-    Refine refine = Refine::stochastic; // sdf: how positions are moved after the choice
-    uint32_t refineRounds = 6;          // times through all probes, 0..1,000; each costs 9 views a probe
-    uint32_t refineSurfels = 16000;     // surface samples to refine by, 1,000..1,000,000
-    bool explain = false;               // fills PlaceReport::picture
-    uint32_t surfels = 16000;           // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
+    uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
+    uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
+    Refine refine = Refine::gradient; // how positions are moved after the choice, grid apart; the others cost more and gain nothing
+    uint32_t refineRounds = 6;        // times through all probes, 0..1,000; each costs 8 views a probe, or 9
+    uint32_t refineSurfels = 16000;   // surface samples to refine by, 1,000..1,000,000
+    bool explain = false;             // fills PlaceReport::picture
+    uint32_t surfels = 16000;         // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
 };
 
 struct PlaceReport
