@@ -70,7 +70,7 @@ void halveFaces(std::span<const uint32_t> faces, uint32_t size, const gpu::Light
                 words[y * half.faceSize + x] =
                     (word & 0xffffu) ? text.packTexel(text.halfToReal(word) * change, 2.0f * gx / change, 2.0f * gy / change) : 0;
             }
-        buildChain(words, half.faceSize, half.topLevel);
+        buildChain(words, half.faceSize);
     }
 }
 

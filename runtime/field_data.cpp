@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "runtime/face_chain_text.h"
+
 namespace sconce
 {
 
@@ -24,17 +26,14 @@ FieldBytes bytesByPart(const FieldData& field)
 uint32_t coarsestLevel(uint32_t faceSize)
 {
     assert(faceSize > 0);
-    uint32_t level = 0;
-    while (level < 6 && faceSize % (4u << level) == 0) level += 2;
-    return level;
+    return uint32_t(chain_text::Text().chainTop(faceSize));
 }
 
 uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size)
 {
     if (chart == gpu::kChartOctahedral) return size * size + (size / gpu::kLowFactor) * (size / gpu::kLowFactor);
-    uint32_t words = 0;
-    for (uint32_t level = 0; level <= coarsestLevel(size); level += 2) words += (size >> level) * (size >> level);
-    return 6 * words;
+    chain_text::Text text;
+    return 6 * text.chainWords(size, text.chainTop(size));
 }
 
 uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "runtime/face_chain_text.h"
 #include "runtime/tracer_cpu.h"
 
 namespace sconce
@@ -22,28 +23,18 @@ gpu::LightFieldInfo fieldSpace(const Bounds& bounds)
     return info;
 }
 
-void buildChain(uint32_t* faceWords, uint32_t faceSize, uint32_t topLevel)
+void buildChain(uint32_t* faceWords, uint32_t faceSize)
 {
-    const FieldData none;
-    twin::LightFieldTwin<float> text(none, {});
-    uint32_t* finer = faceWords;
-    for (uint32_t level = 2; level <= topLevel; level += 2)
+    chain_text::Text text{faceWords};
+    const int top = text.chainTop(faceSize);
+    for (int level = 2; level <= top; level += 2)
     {
-        const uint32_t below = faceSize >> (level - 2), width = faceSize >> level;
-        uint32_t* words = finer + size_t(below) * below;
-        for (uint32_t y = 0; y < width; ++y)
-            for (uint32_t x = 0; x < width; ++x)
-            {
-                uint32_t joined = 0xffffu << 16; // maximum 0, minimum above any half
-                for (uint32_t child = 0; child < 16; ++child)
-                {
-                    const uint32_t word = finer[size_t(4 * y + child / 4) * below + 4 * x + child % 4];
-                    joined = text.joinBounds(joined, level == 2 ? text.texelBounds(word) : word);
-                }
-                words[size_t(y) * width + x] = joined;
-            }
-        finer = words;
+        const uint32_t width = text.chainWidth(faceSize, level);
+        uint32_t* words = faceWords + text.chainOffset(faceSize, level);
+        for (uint32_t i = 0; i < width * width; ++i) words[i] = text.boundingPlane(0, faceSize, level, i % width, i / width);
     }
+    const uint32_t near = text.chainNearWords(faceSize, top);
+    for (uint32_t k = near; k < text.chainWords(faceSize, top); ++k) faceWords[k] = text.farBoundPair(0, faceSize, top, k - near);
 }
 
 void summariseProbe(FieldData& field, size_t probe)

@@ -13,7 +13,7 @@ gpu::LightFieldInfo fieldSpace(const Bounds& sceneBounds);
 
 /// Fills the coarser levels of one face from its level 0 words. Invariant: a texel's (max, min) covers every surfel plane over every texel
 /// below it. CPU twin of shaders/bake_chain.comp.
-void buildChain(uint32_t* faceWords, uint32_t faceSize, uint32_t topLevel);
+void buildChain(uint32_t* faceWords, uint32_t faceSize);
 
 /// Fills freeRadius, farthest and the influence box (median distance per cube face, Wang et al. 2019, section 4.1) of one probe from its
 /// distance words; its centre is kept.

@@ -20,7 +20,7 @@ struct FieldBlock // as shaders/light_field.glsl declares it
     VkDeviceAddress radiance;
     VkDeviceAddress irradiance;
 };
-static_assert(sizeof(FieldBlock) == 240);
+static_assert(sizeof(FieldBlock) == 248);
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
@@ -32,6 +32,8 @@ std::string checkQuality(const gpu::TraceQuality& q)
     if (q.coarsestLevel < 0 || q.coarsestLevel > 6 || q.coarsestLevel % 2) return wrong("coarsestLevel", q.coarsestLevel, "0, 2, 4, 6");
     if (!(q.tolerance >= 0.25f && q.tolerance <= 4.0f)) return wrong("tolerance", q.tolerance, "0.25..4");
     if (!(q.epsilon >= 0.0f && q.epsilon <= 1e-2f)) return wrong("epsilon", q.epsilon, "0..0.01");
+    if (!(q.opinion >= 0.0f && q.opinion <= 1.0f)) return wrong("opinion", q.opinion, "0..1");
+    if (q.farBounds != 0 && q.farBounds != 1) return wrong("farBounds", q.farBounds, "0, 1");
     return {};
 }
 

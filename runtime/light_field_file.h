@@ -12,7 +12,7 @@ namespace sconce
 {
 
 /// The .sconce format's version that is written; any other is refused with a sentence. docs/formats.md describes the bytes.
-inline constexpr uint32_t kFieldFileVersion = 1;
+inline constexpr uint32_t kFieldFileVersion = 2;
 
 /// Writes a light field: whole under its name or not at all; the same field gives the same bytes.
 /// Errors: badArgument (arrays disagree with info), fileError (names file and reason).

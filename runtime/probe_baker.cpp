@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 #include "spirv/bake_bounce_comp.h"
@@ -237,7 +238,10 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     dispatch(cmd, surfacePass, both, push, n, 6);
     if (!octahedral)
     {
-        for (push.level = 2; push.level <= info.topLevel; push.level += 2) dispatch(cmd, chainPass, {}, push, n >> push.level, 6);
+        for (push.level = 2; push.level <= info.topLevel; push.level += 2)
+            dispatch(cmd, chainPass, {}, push, (n + (1u << push.level) - 1) >> push.level, 6);
+        push.level = 0; // the far bounds
+        dispatch(cmd, chainPass, {}, push, uint32_t(std::ceil(std::sqrt(double(push.faceWords - n * n)))), 6);
         return;
     }
     push = pushFor(centre);

@@ -71,6 +71,8 @@ template <class Real> struct LightFieldTwin
 
 #include "shaders/shared/octree_descent.h"
 
+#include "shaders/shared/face_chain.h"
+
 #include "shaders/shared/probe_trace.h"
 
 #include "shaders/shared/light_lookup.h"

@@ -1,23 +1,27 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "bake_probe.glsl"
+uint chainWord(uint index) { return words.word[index]; }
+#define SCONCE_BUILDS_CHAINS
+#include "shared/face_chain.h"
 
-// Bake: one level of the (maximum, minimum) chain of q of six faces, from the level two below it. Conservative: a texel's bounds cover the
-// surfel planes of all texels below it. After Wang et al. 2019, section 4.2. Dispatch: ceil((N >> level)/8) twice x 6.
+// Bake: one level of the chain of six faces, or with level 0 their far bounds. `level` is the level written.
+// Dispatch: ceil(chainWidth/8) twice x 6; far bounds: a square of threads that has one for each word, x 6.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void main()
 {
-    uvec3 at = gl_GlobalInvocationID;
-    uint width = size >> level, below = size >> (level - 2u);
-    if (at.x >= width || at.y >= width) return;
-    uint finer = at.z * faceWords;
-    for (uint l = 0u; l + 2u < level; l += 2u) finer += (size >> l) * (size >> l);
-    uint joined = 0xffff0000u; // maximum 0, minimum above any half
-    for (uint child = 0u; child < 16u; ++child)
+    uint first = gl_GlobalInvocationID.z * faceWords;
+    if (level == 0u)
     {
-        uint word = words.word[finer + (4u * at.y + child / 4u) * below + 4u * at.x + child % 4u];
-        joined = joinBounds(joined, level == 2u ? texelBounds(word) : word);
+        int top = chainTop(size);
+        uint k = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 8u + gl_GlobalInvocationID.x;
+        uint near = chainNearWords(size, top);
+        if (k < chainWords(size, top) - near) words.word[first + near + k] = farBoundPair(first, size, top, k);
+        return;
     }
-    words.word[finer + below * below + at.y * width + at.x] = joined;
+    uvec2 at = gl_GlobalInvocationID.xy;
+    uint width = chainWidth(size, int(level));
+    if (at.x >= width || at.y >= width) return;
+    words.word[first + chainOffset(size, int(level)) + at.y * width + at.x] = boundingPlane(first, size, int(level), at.x, at.y);
 }

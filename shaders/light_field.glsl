@@ -32,6 +32,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/chart.h"
 #include "shared/color.h"
 #include "shared/octree_descent.h"
+#include "shared/face_chain.h"
 #include "shared/probe_trace.h"
 #include "shared/light_lookup.h"
 #include "shared/ray_query.h"

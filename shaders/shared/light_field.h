@@ -6,7 +6,7 @@
 // Chart "cube": probe map of 6 faces, face f looks along axis f>>1, negative when f&1. With p relative to the probe and a the axis,
 //   W = +-p[a], U = p[(a+1)%3], V = p[(a+2)%3], pixel = N/2 * (U/W + 1, V/W + 1), q = 1/W. Straight lines stay straight and q is
 //   linear along them and over planes.
-// Words of a face: levels 0, 2, 4, ... topLevel one after another, row-major, level l has (N >> l)^2 words; see texel.h.
+// Words of a face: levels 0, 2, 4, ... topLevel one after another, then far bounds; see face_chain.h and texel.h.
 // Chart "octahedral": one map of N x N words (level 0: radial distance r and normal), then (N/lowFactor)^2 words of (min r, max r).
 #include "shared/gpu_types.h"
 #ifndef SCONCE_LIGHT_FIELD_H
@@ -69,12 +69,14 @@ struct TraceQuality
 {
     int ranked;        // probes of a leaf that are asked, 1..kRanked
     int maxHandoffs;   // probes a ray may change to, 0..64
-    int startLevel;    // level of the chain a segment starts at; even, 0..topLevel
+    int startLevel;    // level of the chain a ray starts at in a probe; even, 0..topLevel
     int coarsestLevel; // coarsest level climbed to; even
     float tolerance;   // scale of the hit rule's thickness, 1: derived from the texel's footprint
     float epsilon;     // absolute slack, share of the scene's diagonal
+    float opinion;     // a hit in a texel larger than this share of the diagonal is asked of a nearer probe; 0: never
+    int farBounds;     // 1: read the far bounds, and end early where a ray is behind all of a cell; 0: leave them alone
 };
-SCONCE_CHECK_SIZE(TraceQuality, 24);
+SCONCE_CHECK_SIZE(TraceQuality, 32);
 
 /// A ray and its answer, as `trace_rays.comp` reads and writes them; world space, metres.
 struct Ray

@@ -2,9 +2,8 @@
 // `field` (LightFieldInfo), `quality` (TraceQuality), and defines ProbeHeader probeHeader(uint), uint distanceWord(uint), octreeTexel().
 //
 // Along one cube face the pixel P, q = 1/W and t q are linear in one screen parameter s in [0,1], and a surfel's plane is linear in (P, q):
-// the march needs no division, root or normalisation. It steps a min/max chain (here its maxima of q: the nearest surface of a texel) as a
-// Hi-Z march does (Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections"; Wang et al. 2019, section 4.2), and ends in the plane of one
-// surfel. What one probe can't tell (UNKNOWN) is handed to the next probe of the octree's leaf at that point, with the ray re-entered
+// the march needs no division, root or normalisation. It steps a Hi-Z chain (Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections";
+// Wang et al. 2019, section 4.2) whose cells hold bounding planes (face_chain.h), and ends in the plane of one surfel. What one probe can't tell (UNKNOWN) is handed to the next probe of the octree's leaf at that point, with the ray re-entered
 // BEFORE the cell that blocked it, so that the next probe misses nothing (Donow 2016, section on back faces).
 // All lengths are field units (light_field.h).
 
@@ -17,6 +16,10 @@ SCONCE_CONST int kPhaseSegment = 1;
 SCONCE_CONST int kPhaseMarch = 2;
 SCONCE_CONST int kPhaseFine = 3;
 SCONCE_CONST int kPhaseDone = 4;
+
+SCONCE_CONST uint kEventCrossing = 0u;  // ran into a surfel's plane
+SCONCE_CONST uint kEventFirst = 1u;     // was behind it from the start in this probe
+SCONCE_CONST uint kEventContinued = 2u; // came to it behind it, over a surface that goes on
 
 SCONCE_CONST int kMarchSteps = 8;    // march steps a turn of the state machine, before other lanes' events get their turn
 SCONCE_CONST int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
@@ -37,6 +40,9 @@ struct RayState
     int face;
     int segments;   // of this probe so far
     bool fresh;     // no texel of this probe has been passed yet
+    real back;      // how much before t the next probe starts: the last one's texel there, a silhouette is not known better
+    real opinionT;  // t of a hit that a nearer probe is asked about, -1: none yet, -2: it was asked
+    real opinionReach; // the nearer probe must meet it, or come to a dead end, up to here
     real tClear;    // t at which the tried set was last cleared
     uint tried[kMaxTried];
     int triedCount;
@@ -64,6 +70,8 @@ struct RayState
     real sEnd;      // end of the current texel
     int came;       // how the current cell was entered: 0 not through a border, 1 in x, 2 in y
     uint word;      // texel of the fine event
+    real wordSize;  // extent of that texel on its surface, field units
+    uint event;     // kEvent...: how the last surfel was met
     // what happened
     int handoffs;
     int distanceReads;
@@ -87,12 +95,6 @@ struct TraceResult
     int distanceReads;
     int indexReads;
 };
-
-SCONCE_FN uint levelOffset(int level)
-{
-    uint width = field.faceSize >> level;
-    return (field.faceSize * field.faceSize - width * width) / 15u * 16u; // sum of a geometric series: each level has 1/16 of the words
-}
 
 /// The time at which the ray leaves the field's box, enlarged by 2 % so that a wall on its border is met; 0 when it never is inside.
 SCONCE_FN real fieldExit(vec3 o, vec3 d)
@@ -121,6 +123,26 @@ SCONCE_FN bool wasTried(SCONCE_IN(RayState) r, uint probe)
     for (int i = 0; i < r.triedCount; ++i)
         if (r.tried[i] == probe) return true;
     return false;
+}
+
+/// Goes on in a probe, from t.
+SCONCE_FN void enterProbe(SCONCE_INOUT(RayState) r, uint probe, real t)
+{
+    if (r.triedCount < kMaxTried)
+    {
+        r.tried[r.triedCount] = probe;
+        ++r.triedCount;
+    }
+    ++r.handoffs;
+    r.probe = probe;
+    ProbeHeader header = probeHeader(probe);
+    r.relative = r.origin - vec3(header.centre);
+    r.freeBall = real(0.5) * real(header.freeRadius);
+    r.segments = 0;
+    r.fresh = true;
+    r.nextFace = -2;
+    r.ta = t;
+    r.phase = kPhaseSegment;
 }
 
 /// Next probe: the leaf's list at the point reached, then the lists a little further on. Ends the ray as UNKNOWN when all were asked.
@@ -158,19 +180,13 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
         r.phase = kPhaseDone;
         return;
     }
-    r.tried[r.triedCount] = found;
-    ++r.triedCount;
-    ++r.handoffs;
-    r.probe = found;
-    ProbeHeader header = probeHeader(found);
-    r.relative = r.origin - vec3(header.centre);
-    r.freeBall = real(0.5) * real(header.freeRadius);
-    r.segments = 0;
-    r.fresh = true;
-    r.nextFace = -2;
-    r.ta = r.t;
-    r.phase = kPhaseSegment;
+    enterProbe(r, found, max(r.t - r.back, real(0.0)));
+    r.back = real(0.0);
+    if (r.opinionT >= real(0.0)) r.opinionT = real(-2.0);
 }
+
+/// Pixels are mirrored about the middle of the coarsest level's cells, which may reach over the face: cells stay cells.
+SCONCE_FN int mirrorSize() { return int(chainWidth(field.faceSize, int(field.topLevel)) << field.topLevel); }
 
 /// The piece of the ray from r.ta to where it leaves the face, the free ball's surroundings or the field.
 SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
@@ -253,15 +269,16 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
                    clamp(real(0.5) * size * ((f0.y + r.tb * f1.y) * qb + real(1.0)), edge, size - edge));
     r.mirrorX = Pb.x < Pa.x ? -1 : 0;
     r.mirrorY = Pb.y < Pa.y ? -1 : 0;
+    real mirror = real(mirrorSize());
     if (r.mirrorX != 0)
     {
-        Pa.x = size - Pa.x;
-        Pb.x = size - Pb.x;
+        Pa.x = mirror - Pa.x;
+        Pb.x = mirror - Pb.x;
     }
     if (r.mirrorY != 0)
     {
-        Pa.y = size - Pa.y;
-        Pb.y = size - Pb.y;
+        Pa.y = mirror - Pa.y;
+        Pb.y = mirror - Pb.y;
     }
     r.P = Pa;
     r.dP = Pb - Pa;
@@ -277,7 +294,7 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
     r.ey = int(Pb.y);
     r.s = real(0.0);
     r.came = 0;
-    r.level = min(quality.startLevel, int(field.topLevel));
+    r.level = min(r.segments == 1 ? quality.startLevel : quality.coarsestLevel, int(field.topLevel));
     uint wordsPerFace = field.wordsPerProbe / 6u;
     r.faceWords = r.probe * field.wordsPerProbe + uint(r.face) * wordsPerFace;
     r.phase = kPhaseMarch;
@@ -294,14 +311,27 @@ SCONCE_FN vec2 planeLine(SCONCE_IN(RayState) r, uint word, real cx, real cy)
     return vec2(r.q0 - (qc + gx * (r.P.x - cx) + gy * (r.P.y - cy)), r.dq - (gx * r.dP.x + gy * r.dP.y));
 }
 
-SCONCE_FN uint texelIndex(SCONCE_IN(RayState) r, int x, int y, int level)
+/// Cell of a level, row-major, of (mirrored) texel x, y.
+SCONCE_FN uint cellIndex(SCONCE_IN(RayState) r, int x, int y, int level)
 {
-    int width = int(field.faceSize >> level);
-    int cx = (x >> level);
-    int cy = (y >> level);
-    cx = r.mirrorX != 0 ? width - 1 - cx : cx;
-    cy = r.mirrorY != 0 ? width - 1 - cy : cy;
-    return r.faceWords + levelOffset(level) + uint(cy * width + cx);
+    int last = (mirrorSize() >> level) - 1;
+    int cx = x >> level;
+    int cy = y >> level;
+    cx = r.mirrorX != 0 ? last - cx : cx;
+    cy = r.mirrorY != 0 ? last - cy : cy;
+    return uint(cy) * chainWidth(field.faceSize, level) + uint(cx);
+}
+
+/// Whether the ray, q between qs and qe, is behind everything in a cell by more than any surfel's thickness: what its texels would say one
+/// by one, said at once.
+SCONCE_FN bool behindCell(SCONCE_INOUT(RayState) r, uint index, real qs, real qe)
+{
+    uint cell = chainOffset(field.faceSize, r.level) - field.faceSize * field.faceSize + index;
+    uint word = distanceWord(r.faceWords + chainNearWords(field.faceSize, int(field.topLevel)) + cell / 2u);
+    ++r.distanceReads;
+    real footprint = real(2.0) / real(field.faceSize);
+    real thickest = quality.tolerance * footprint * real(8.84) + quality.epsilon * real(field.diagonal) * max(qs, qe); // 1/0.12 + 1/2
+    return max(qs, qe) * (real(1.0) + thickest) < farBoundIn(word, cell);
 }
 
 SCONCE_FN void endSegment(SCONCE_INOUT(RayState) r)
@@ -311,42 +341,129 @@ SCONCE_FN void endSegment(SCONCE_INOUT(RayState) r)
     r.phase = kPhaseSegment;
 }
 
+SCONCE_FN real timeAt(SCONCE_IN(RayState) r, real s) { return (r.tq0 + s * r.dtq) / (r.q0 + s * r.dq); }
+
+SCONCE_FN void rememberSurfel(SCONCE_INOUT(RayState) r, real s)
+{
+    real size = real(mirrorSize());
+    vec2 p = vec2(clamp(r.P.x + s * r.dP.x, real(r.ix), real(r.ix) + real(1.0)), clamp(r.P.y + s * r.dP.y, real(r.iy), real(r.iy) + real(1.0)));
+    r.pixel = vec2(r.mirrorX != 0 ? size - p.x : p.x, r.mirrorY != 0 ? size - p.y : p.y);
+    r.hitWord = r.word;
+    r.lastProbe = r.probe;
+    r.lastFace = r.face;
+}
+
+/// Extent on its surface of a texel of the current face, field units.
+SCONCE_FN real texelExtent(SCONCE_IN(RayState) r, uint word)
+{
+    real gx = unpackGradient(word >> 16);
+    real gy = unpackGradient(word >> 24);
+    return max(sqrt(gx * gx + gy * gy), real(2.0) / real(field.faceSize)) / max(r.q0 + r.s * r.dq, real(1e-12));
+}
+
+/// A hit in a large texel is asked of a probe that stands nearer to it, when the octree lists one: what it sees there counts, and where it
+/// comes to a dead end before the hit, the hit stands. False when there is none to ask.
+SCONCE_FN bool askNearer(SCONCE_INOUT(RayState) r, real t)
+{
+    if (r.opinionT != real(-1.0) || r.handoffs > quality.maxHandoffs || !(quality.opinion > real(0.0)) || r.wordSize <= quality.opinion * real(field.diagonal)) return false;
+    vec3 hit = r.origin + t * r.direction;
+    uvec4 ranked = rankedProbesAt(r.origin + (t - real(0.02) * real(field.voxel)) * r.direction, r.indexReads);
+    vec3 own = r.relative + t * r.direction;
+    real best = real(0.36) * dot(own, own); // at 0.6 of the distance or nearer
+    uint nearer = kNoProbe;
+    for (int k = 0; k < quality.ranked; ++k)
+    {
+        vec3 to = hit - vec3(probeHeader(ranked[k]).centre);
+        if (ranked[k] != r.probe && dot(to, to) < best)
+        {
+            best = dot(to, to);
+            nearer = ranked[k];
+        }
+    }
+    if (nearer == kNoProbe) return false;
+    r.opinionT = t;
+    r.opinionReach = t + r.wordSize;
+    r.t = max(r.t, t - real(2.0) * r.wordSize);
+    enterProbe(r, nearer, r.t);
+    return true;
+}
+
+SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
+{
+    rememberSurfel(r, s);
+    real t = max(r.t, timeAt(r, s));
+    if (askNearer(r, t)) return;
+    r.t = t;
+    r.status = kHit;
+    r.phase = kPhaseDone;
+}
+
+SCONCE_FN void handOff(SCONCE_INOUT(RayState) r)
+{
+    real t = min(timeAt(r, r.s), r.tb);
+    if (r.opinionT >= real(0.0))
+    {
+        if (t <= r.opinionReach) // no better known: the first answer, whose surfel is still remembered
+        {
+            r.t = r.opinionT;
+            r.status = kHit;
+            r.phase = kPhaseDone;
+            return;
+        }
+        r.opinionT = real(-2.0);
+    }
+    rememberSurfel(r, r.s);
+    if (r.event != kEventFirst && t > r.t) r.back = real(2.0) / real(field.faceSize) / (r.q0 + r.s * r.dq);
+    r.t = max(r.t, t);
+    r.phase = kPhaseChoose;
+}
+
 SCONCE_FN void march(SCONCE_INOUT(RayState) r)
 {
     for (int step = 0; step < kMarchSteps; ++step)
     {
-        int bx = (r.ix | ((1 << r.level) - 1)) + 1;
-        int by = (r.iy | ((1 << r.level) - 1)) + 1;
-        uint word = distanceWord(texelIndex(r, r.ix, r.iy, r.level));
+        int x = (r.ix >> r.level) << r.level;
+        int y = (r.iy >> r.level) << r.level;
+        int bx = x + (1 << r.level);
+        int by = y + (1 << r.level);
+        uint index = cellIndex(r, x, y, r.level);
+        uint word = distanceWord(r.faceWords + chainOffset(field.faceSize, r.level) + index);
         ++r.distanceReads;
         real sx = (real(bx) - r.P.x) * r.iP.x;
         real sy = (real(by) - r.P.y) * r.iP.y;
         real se = max(min(min(sx, sy), real(1.0)), r.s);
-        if (r.level > 0)
+        if ((word & 0xffffu) != 0u)
         {
-            real bound = halfToReal(word);
-            real qs = r.q0 + r.s * r.dq;
-            real qe = r.q0 + se * r.dq;
-            if (min(qs, qe) <= bound)
+            real half_ = real(0.5) * real(1 << r.level);
+            vec2 line = planeLine(r, word, real(x) + half_, real(y) + half_);
+            real gs = line.x + r.s * line.y;
+            real ge = line.x + se * line.y;
+            if (min(gs, ge) < real(0.0))
             {
-                real s = min(max((bound - r.q0) * r.idq * real(0.99999), r.s), se);
-                if (s > r.s) r.came = 0;
-                r.s = s;
-                r.ix = max(r.ix, min(int(r.P.x + s * r.dP.x), min(r.ex, bx - 1)));
-                r.iy = max(r.iy, min(int(r.P.y + s * r.dP.y), min(r.ey, by - 1)));
+                if (r.level == 0)
+                {
+                    r.word = word;
+                    r.sEnd = se;
+                    r.phase = kPhaseFine;
+                    return;
+                }
+                if (gs > real(0.0)) // in front so far: nothing of the cell is met before its bound
+                {
+                    real s = min(max(r.s + (se - r.s) * (gs / (gs - ge)) * real(0.9999), r.s), se);
+                    if (s > r.s) r.came = 0;
+                    r.s = s;
+                    r.ix = max(r.ix, min(int(r.P.x + s * r.dP.x), min(r.ex, bx - 1)));
+                    r.iy = max(r.iy, min(int(r.P.y + s * r.dP.y), min(r.ey, by - 1)));
+                }
+                else if (quality.farBounds != 0 && ge < real(0.0) && behindCell(r, index, r.q0 + r.s * r.dq, r.q0 + se * r.dq))
+                {
+                    r.word = word;
+                    r.event = r.fresh ? kEventFirst : kEventContinued;
+                    handOff(r);
+                    return;
+                }
                 r.level -= 2;
                 continue;
-            }
-        }
-        else if ((word & 0xffffu) != 0u)
-        {
-            vec2 line = planeLine(r, word, real(r.ix) + real(0.5), real(r.iy) + real(0.5));
-            if (min(line.x + r.s * line.y, line.x + se * line.y) < real(0.0))
-            {
-                r.word = word;
-                r.sEnd = se;
-                r.phase = kPhaseFine;
-                return;
             }
         }
         r.fresh = false;
@@ -376,40 +493,13 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
     }
 }
 
-SCONCE_FN real timeAt(SCONCE_IN(RayState) r, real s) { return (r.tq0 + s * r.dtq) / (r.q0 + s * r.dq); }
-
-SCONCE_FN void rememberSurfel(SCONCE_INOUT(RayState) r, real s)
-{
-    real size = real(field.faceSize);
-    vec2 p = vec2(clamp(r.P.x + s * r.dP.x, real(r.ix), real(r.ix) + real(1.0)), clamp(r.P.y + s * r.dP.y, real(r.iy), real(r.iy) + real(1.0)));
-    r.pixel = vec2(r.mirrorX != 0 ? size - p.x : p.x, r.mirrorY != 0 ? size - p.y : p.y);
-    r.hitWord = r.word;
-    r.lastProbe = r.probe;
-    r.lastFace = r.face;
-}
-
-SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
-{
-    rememberSurfel(r, s);
-    r.t = max(r.t, timeAt(r, s));
-    r.status = kHit;
-    r.phase = kPhaseDone;
-}
-
-SCONCE_FN void handOff(SCONCE_INOUT(RayState) r)
-{
-    rememberSurfel(r, r.s);
-    r.t = max(r.t, min(timeAt(r, r.s), r.tb));
-    r.phase = kPhaseChoose;
-}
-
 /// Whether the previous texel along the ray and this one show one surface: the plane of either predicts the other's distance.
 SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, real tolerance)
 {
     int px = r.came == 1 ? r.ix - 1 : r.ix;
     int py = r.came == 2 ? r.iy - 1 : r.iy;
     if (r.came == 0 || px < 0 || py < 0) return false;
-    uint before = distanceWord(texelIndex(r, px, py, 0));
+    uint before = distanceWord(r.faceWords + cellIndex(r, px, py, 0));
     ++r.distanceReads;
     if ((before & 0xffffu) == 0u) return false;
     real qb = halfToReal(before);
@@ -442,6 +532,8 @@ SCONCE_FN void fineEvent(SCONCE_INOUT(RayState) r)
 
     bool first = r.fresh;
     r.fresh = false;
+    r.event = ga >= real(0.0) ? kEventCrossing : (first ? kEventFirst : kEventContinued);
+    r.wordSize = texelExtent(r, r.word);
     if (ga >= real(0.0)) // crosses the plane inside the texel
     {
         real sx = min(max(-line.x / line.y, r.s), r.sEnd);
@@ -509,6 +601,11 @@ SCONCE_FN RayState beginRay(vec3 origin, vec3 direction)
     r.status = kUnknown;
     r.phase = kPhaseChoose;
     r.probe = kNoProbe;
+    r.back = real(0.0);
+    r.opinionT = real(-1.0);
+    r.opinionReach = real(0.0);
+    r.wordSize = real(0.0);
+    r.event = kEventCrossing;
     r.tClear = real(0.0);
     r.triedCount = 0;
     r.handoffs = 0;

@@ -2,7 +2,8 @@
 //
 // Level 0: bits 0..15 half float q = 1/W at the texel's centre (0: sky), bits 16..23 and 24..31 signed bytes gx, gy: the surfel's plane.
 //   q over the texel = q (1 + g.x dx + g.y dy), dx, dy in texels from the centre, g = kGradientScale s |s|, s = byte / 127.
-// Level 2, 4, ...: bits 0..15 half float maximum of q over the texel (nearest surface, rounded up), bits 16..31 minimum (rounded down).
+//   0 where all bits of q are 0: sky, which has no plane.
+// Level 2, 4, ...: a bounding plane of the cell, packed alike, dx, dy in texels from the cell's centre; see face_chain.h.
 // Octahedral level 0: bits 0..15 half float r (0x7c00: sky), bits 16..31 octahedral normal, 8 + 8 bits. Low level: (min r, max r).
 
 SCONCE_CONST real kGradientScale = real(0.15);
@@ -45,12 +46,10 @@ SCONCE_FN uint packTexel(real q, real gx, real gy)
     return realToHalf(q) | (packGradient(gx) << 16) | (packGradient(gy) << 24);
 }
 
-/// Bounds of q over a level 0 texel, rounded outward, as a word of a coarser level.
+/// Bounds of q over a level 0 texel, rounded outward: half maximum | half minimum << 16.
 SCONCE_FN uint texelBounds(uint word)
 {
     real q = halfToReal(word);
     real spread = real(0.5) * (abs(unpackGradient(word >> 16)) + abs(unpackGradient(word >> 24)));
     return realToHalfUp(q * (real(1.0) + spread) * real(1.000001)) | (realToHalfDown(q * (real(1.0) - spread) * real(0.999999)) << 16);
 }
-
-SCONCE_FN uint joinBounds(uint a, uint b) { return max(a & 0xffffu, b & 0xffffu) | (min(a >> 16, b >> 16) << 16); }

@@ -115,10 +115,10 @@ void expectSame(const FieldData& a, const FieldData& b)
 TEST(FieldData, WordsPerProbeFollowTheLevelsOfTheChain)
 {
     EXPECT_EQ(coarsestLevel(256), 6u);
-    EXPECT_EQ(coarsestLevel(96), 4u); // 96 = 3 * 32: divisible by 16, not by 64
-    EXPECT_EQ(coarsestLevel(8), 2u);
-    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartCube, 256), 6u * (256 * 256 + 64 * 64 + 16 * 16 + 4 * 4));
-    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartCube, 8), 6u * (64 + 4));
+    EXPECT_EQ(coarsestLevel(96), 6u); // 6 cells at level 4, two that reach over the border at level 6
+    EXPECT_EQ(coarsestLevel(8), 4u);
+    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartCube, 256), 6u * (256 * 256 + 64 * 64 + 16 * 16 + 4 * 4 + (64 * 64 + 16 * 16 + 4 * 4) / 2));
+    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartCube, 8), 6u * (64 + 4 + 1 + 3)); // five cells' far bounds take three words
     EXPECT_EQ(distanceWordsPerProbe(gpu::kChartOctahedral, 512), 512u * 512 + 32 * 32);
     EXPECT_EQ(radianceWordsPerProbe(gpu::kChartCube, 16), 6u * 256);
     EXPECT_EQ(radianceWordsPerProbe(gpu::kChartOctahedral, 16), 256u);

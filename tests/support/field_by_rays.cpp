@@ -50,7 +50,7 @@ FieldData fieldByRays(const RayScene& rays, std::span<const glm::vec3> positions
                             const float perTexel = facing != 0.0f ? 2.0f / (float(size) * facing) : 0.0f;
                             words[y * size + x] = text.packTexel(field.info.scale / hit->t, n.x * perTexel, n.y * perTexel);
                         }
-                    buildChain(words, faceSize, field.info.topLevel);
+                    buildChain(words, faceSize);
                 });
     for (size_t probe = 0; probe < positions.size(); ++probe)
     {

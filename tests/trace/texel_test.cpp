@@ -72,52 +72,6 @@ TEST(Texel, GradientRoundsToNearestStep)
     EXPECT_EQ(text.f.unpackGradient(text.f.packGradient(0.0f)), 0.0f);
 }
 
-TEST(Texel, BoundsHoldEveryPointOfThePlane)
-{
-    Text text;
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> logQ(-4.0f, 4.0f), gradient(-0.2f, 0.2f), offset(-0.5f, 0.5f);
-    for (int i = 0; i < 20000; ++i)
-    {
-        const uint32_t word = text.f.packTexel(std::exp2(logQ(random)), gradient(random), gradient(random));
-        const uint32_t bounds = text.f.texelBounds(word);
-        const double q = text.d.halfToReal(word), high = text.d.halfToReal(bounds), low = text.d.halfToReal(bounds >> 16);
-        for (int k = 0; k < 4; ++k)
-        {
-            const double plane =
-                q * (1.0 + text.d.unpackGradient(word >> 16) * offset(random) + text.d.unpackGradient(word >> 24) * offset(random));
-            EXPECT_LE(plane, high);
-            EXPECT_GE(plane, low);
-        }
-    }
-}
-
-TEST(Texel, ChainHoldsEveryTexelBelow)
-{
-    Text text;
-    const uint32_t size = 64;
-    std::vector<uint32_t> words(distanceWordsPerProbe(gpu::kChartCube, size) / 6);
-    std::mt19937 random(4);
-    std::uniform_real_distribution<float> q(0.0f, 8.0f), gradient(-0.1f, 0.1f);
-    for (uint32_t i = 0; i < size * size; ++i)
-        words[i] = i % 17 == 0 ? 0u : text.f.packTexel(q(random), gradient(random), gradient(random));
-    buildChain(words.data(), size, coarsestLevel(size));
-    uint32_t offset = size * size;
-    for (uint32_t level = 2; level <= coarsestLevel(size); level += 2)
-    {
-        const uint32_t width = size >> level;
-        for (uint32_t i = 0; i < size * size; ++i)
-        {
-            const uint32_t parent = words[offset + ((i / size) >> level) * width + ((i % size) >> level)];
-            const uint32_t own = text.f.texelBounds(words[i]);
-            EXPECT_GE(parent & 0xffffu, own & 0xffffu);
-            EXPECT_LE(parent >> 16, own >> 16);
-        }
-        offset += width * width;
-    }
-    EXPECT_EQ(offset, words.size());
-}
-
 TEST(Colour, RadianceRoundTripsWithinItsMantissa)
 {
     Text text;
