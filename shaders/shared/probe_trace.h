@@ -42,6 +42,7 @@ struct RayState
     bool fresh;     // no texel of this probe has been passed yet
     real back;      // how much before t the next probe starts: the last one's texel there, a silhouette is not known better
     real opinionT;  // t of a hit that a nearer probe is asked about, -1: none yet, -2: it was asked
+    real tEntered;  // t when the ray entered the probe
     real opinionReach; // the nearer probe must meet it, or come to a dead end, up to here
     real tClear;    // t at which the tried set was last cleared
     uint tried[kMaxTried];
@@ -142,47 +143,69 @@ SCONCE_FN void enterProbe(SCONCE_INOUT(RayState) r, uint probe, real t)
     r.fresh = true;
     r.nextFace = -2;
     r.ta = t;
+    r.tEntered = r.t;
     r.phase = kPhaseSegment;
 }
 
-/// Next probe: the leaf's list at the point reached, then the lists a little further on. Ends the ray as UNKNOWN when all were asked.
+/// Next probe. After a hit in a large texel (r.opinionT): one of the leaf there that stands nearer, for a second opinion; what it sees
+/// counts, and where it comes to a dead end before the hit, or there is none, the hit stands. Else: the leaf's list at the point reached,
+/// then the lists a little further on; the ray ends as UNKNOWN when all were asked.
 SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
 {
-    if (r.t >= r.tMax)
+    bool opinion = r.opinionT >= real(0.0) && r.status == kHit;
+    if (!opinion)
     {
-        r.status = kMiss;
-        r.phase = kPhaseDone;
-        return;
+        if (r.opinionT >= real(0.0)) r.opinionT = real(-2.0);
+        r.status = r.t >= r.tMax ? kMiss : kUnknown;
+        if (r.t >= r.tMax || r.handoffs > quality.maxHandoffs)
+        {
+            r.phase = kPhaseDone;
+            return;
+        }
+        if (r.t > r.tClear + real(1e-4) * real(field.diagonal) && r.triedCount > 0)
+        {
+            r.tried[0] = r.tried[r.triedCount - 1];
+            r.triedCount = 1;
+            r.tClear = r.t;
+        }
     }
-    if (r.handoffs > quality.maxHandoffs)
-    {
-        r.status = kUnknown;
-        r.phase = kPhaseDone;
-        return;
-    }
-    if (r.t > r.tClear + real(1e-4) * real(field.diagonal) && r.triedCount > 0)
-    {
-        r.tried[0] = r.tried[r.triedCount - 1];
-        r.triedCount = 1;
-        r.tClear = r.t;
-    }
+    vec3 own = r.relative + r.t * r.direction;
+    real best = real(0.36) * dot(own, own); // of an opinion: 0.6 of the distance, squared
     uint found = kNoProbe;
     for (int list = 0; list < 3 && found == kNoProbe; ++list)
     {
-        real ahead = list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75));
+        real ahead = opinion ? real(-0.02) : (list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75)));
         uvec4 ranked = rankedProbesAt(r.origin + (r.t + ahead * real(field.voxel)) * r.direction, r.indexReads);
-        for (int k = 0; k < quality.ranked && found == kNoProbe; ++k)
-            if (!wasTried(r, ranked[k])) found = ranked[k];
+        for (int k = 0; k < quality.ranked; ++k)
+        {
+            if (opinion)
+            {
+                vec3 to = r.origin + r.t * r.direction - vec3(probeHeader(ranked[k]).centre);
+                if (ranked[k] != r.probe && dot(to, to) < best)
+                {
+                    best = dot(to, to);
+                    found = ranked[k];
+                }
+            }
+            else if (found == kNoProbe && !wasTried(r, ranked[k])) found = ranked[k];
+        }
+        if (opinion) break;
     }
-    if (found == kNoProbe || r.triedCount >= kMaxTried)
+    if (found == kNoProbe || (!opinion && r.triedCount >= kMaxTried))
     {
-        r.status = kUnknown;
         r.phase = kPhaseDone;
         return;
     }
-    enterProbe(r, found, max(r.t - r.back, real(0.0)));
+    real start = max(r.t - r.back, real(0.0));
+    if (opinion)
+    {
+        r.opinionReach = r.t + r.wordSize;
+        r.t = max(r.t - real(2.0) * r.wordSize, r.tEntered);
+        start = r.t;
+        r.status = kUnknown;
+    }
+    enterProbe(r, found, start);
     r.back = real(0.0);
-    if (r.opinionT >= real(0.0)) r.opinionT = real(-2.0);
 }
 
 /// Pixels are mirrored about the middle of the coarsest level's cells, which may reach over the face: cells stay cells.
@@ -361,41 +384,18 @@ SCONCE_FN real texelExtent(SCONCE_IN(RayState) r, uint word)
     return max(sqrt(gx * gx + gy * gy), real(2.0) / real(field.faceSize)) / max(r.q0 + r.s * r.dq, real(1e-12));
 }
 
-/// A hit in a large texel is asked of a probe that stands nearer to it, when the octree lists one: what it sees there counts, and where it
-/// comes to a dead end before the hit, the hit stands. False when there is none to ask.
-SCONCE_FN bool askNearer(SCONCE_INOUT(RayState) r, real t)
-{
-    if (r.opinionT != real(-1.0) || r.handoffs > quality.maxHandoffs || !(quality.opinion > real(0.0)) || r.wordSize <= quality.opinion * real(field.diagonal)) return false;
-    vec3 hit = r.origin + t * r.direction;
-    uvec4 ranked = rankedProbesAt(r.origin + (t - real(0.02) * real(field.voxel)) * r.direction, r.indexReads);
-    vec3 own = r.relative + t * r.direction;
-    real best = real(0.36) * dot(own, own); // at 0.6 of the distance or nearer
-    uint nearer = kNoProbe;
-    for (int k = 0; k < quality.ranked; ++k)
-    {
-        vec3 to = hit - vec3(probeHeader(ranked[k]).centre);
-        if (ranked[k] != r.probe && dot(to, to) < best)
-        {
-            best = dot(to, to);
-            nearer = ranked[k];
-        }
-    }
-    if (nearer == kNoProbe) return false;
-    r.opinionT = t;
-    r.opinionReach = t + r.wordSize;
-    r.t = max(r.t, t - real(2.0) * r.wordSize);
-    enterProbe(r, nearer, r.t);
-    return true;
-}
-
 SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
 {
     rememberSurfel(r, s);
-    real t = max(r.t, timeAt(r, s));
-    if (askNearer(r, t)) return;
-    r.t = t;
+    r.t = max(r.t, timeAt(r, s));
     r.status = kHit;
     r.phase = kPhaseDone;
+    if (r.opinionT == real(-1.0) && r.handoffs <= quality.maxHandoffs && quality.opinion > real(0.0) &&
+        r.wordSize > quality.opinion * real(field.diagonal))
+    {
+        r.opinionT = r.t;
+        r.phase = kPhaseChoose;
+    }
 }
 
 SCONCE_FN void handOff(SCONCE_INOUT(RayState) r)
@@ -455,7 +455,7 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
                     r.ix = max(r.ix, min(int(r.P.x + s * r.dP.x), min(r.ex, bx - 1)));
                     r.iy = max(r.iy, min(int(r.P.y + s * r.dP.y), min(r.ey, by - 1)));
                 }
-                else if (quality.farBounds != 0 && ge < real(0.0) && behindCell(r, index, r.q0 + r.s * r.dq, r.q0 + se * r.dq))
+                else if (readsFarBounds() && ge < real(0.0) && behindCell(r, index, r.q0 + r.s * r.dq, r.q0 + se * r.dq))
                 {
                     r.word = word;
                     r.event = r.fresh ? kEventFirst : kEventContinued;
@@ -604,6 +604,8 @@ SCONCE_FN RayState beginRay(vec3 origin, vec3 direction)
     r.back = real(0.0);
     r.opinionT = real(-1.0);
     r.opinionReach = real(0.0);
+    r.tEntered = real(0.0);
+    r.relative = vec3(real(0.0));
     r.wordSize = real(0.0);
     r.event = kEventCrossing;
     r.tClear = real(0.0);
