@@ -19,7 +19,7 @@ Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
     if (!made) return made.error();
     set = std::move(*made);
     const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
-    auto built = Pipeline::compute(*gpu, shader, layouts, 0);
+    auto built = Pipeline::compute(*gpu, shader, layouts, 0, field->constants());
     if (!built) return built.error();
     pipeline = std::move(*built);
     return success();

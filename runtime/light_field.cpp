@@ -131,8 +131,14 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
 Status LightField::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
+    readsFarBounds = quality.trace.farBounds != 0;
     const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
+}
+
+std::array<uint32_t, 1> LightField::constants() const
+{
+    return {readsFarBounds ? 1u : 0u};
 }
 
 Result<RayTracer> RayTracer::create(Gpu& gpu, const LightField& field, Spirv shader)
@@ -145,7 +151,8 @@ Result<RayTracer> RayTracer::create(Gpu& gpu, const LightField& field, Spirv sha
     if (!set) return set.error();
     made.set = std::move(*set);
     const VkDescriptorSetLayout layouts[] = {field.layout(), made.set.layout()};
-    auto pipeline = Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(uint32_t));
+    const auto constants = field.constants();
+    auto pipeline = Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(uint32_t), constants);
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
     return made;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "runtime/field_data.h"
@@ -21,6 +22,8 @@ public:
     VkDescriptorSet descriptorSet() const { return set.handle(); }
     const gpu::LightFieldInfo& info() const { return fieldInfo; }
     uint64_t deviceBytes() const { return bytes; }
+    /// Values of the constant ids of a pass that includes shaders/light_field.glsl: `farBounds` is fixed in a pass when it is made.
+    std::array<uint32_t, 1> constants() const;
     /// Takes effect for command buffers submitted after it. Not while the GPU reads the field.
     Status setQuality(const Quality& quality);
 
@@ -29,6 +32,7 @@ private:
     Gpu* gpu = nullptr;
     gpu::LightFieldInfo fieldInfo{};
     Buffer block, probes, distance, radiance, irradiance;
+    bool readsFarBounds = false;
     GpuImage octree;
     DescriptorSet set;
     uint64_t bytes = 0;

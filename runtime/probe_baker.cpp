@@ -305,7 +305,7 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
-        auto made = Pipeline::compute(gpu, bake_bounce_comp, sets, sizeof(Push));
+        auto made = Pipeline::compute(gpu, bake_bounce_comp, sets, sizeof(Push), field.constants());
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }

@@ -45,6 +45,10 @@ template <class Real> struct LightFieldTwin
     TraceQuality quality;
     const FieldData& source;
 
+    bool readsFarBounds() const
+    {
+        return quality.farBounds != 0;
+    }
     const ProbeHeader& probeHeader(uint probe) const
     {
         return source.probes[probe];

@@ -22,6 +22,10 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = 0) readonly buffer SconceField
 layout(scalar, set = SCONCE_FIELD_SET, binding = 1) readonly buffer SconceProbes { ProbeHeader sconceProbes[]; };
 layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
 
+// TraceQuality::farBounds, a constant: a trace without them pays nothing for them. LightField::constants() holds its value.
+layout(constant_id = 0) const bool kReadFarBounds = false;
+bool readsFarBounds() { return kReadFarBounds; }
+
 ProbeHeader probeHeader(uint probe) { return sconceProbes[probe]; }
 uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
 uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }

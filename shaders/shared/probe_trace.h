@@ -21,9 +21,9 @@ SCONCE_CONST uint kEventCrossing = 0u;  // ran into a surfel's plane
 SCONCE_CONST uint kEventFirst = 1u;     // was behind it from the start in this probe
 SCONCE_CONST uint kEventContinued = 2u; // came to it behind it, over a surface that goes on
 
-SCONCE_CONST int kMarchSteps = 8;    // march steps a turn of the state machine, before other lanes' events get their turn
+SCONCE_CONST int kMarchSteps = 16;    // march steps a turn of the state machine, before other lanes' events get their turn
 SCONCE_CONST int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
-SCONCE_CONST int kMaxTried = 12;     // probes remembered as tried without progress: three lists of four
+SCONCE_CONST int kMaxTried = 12;     // probes remembered as tried without progress: three lists of four, in three vectors
 
 struct RayState
 {
@@ -45,7 +45,9 @@ struct RayState
     real tEntered;  // t when the ray entered the probe
     real opinionReach; // the nearer probe must meet it, or come to a dead end, up to here
     real tClear;    // t at which the tried set was last cleared
-    uint tried[kMaxTried];
+    uvec4 tried0;   // newest first; vectors, since an array indexed by lane is slow wherever lanes are vectors
+    uvec4 tried1;
+    uvec4 tried2;
     int triedCount;
     // segment of the ray on a face
     real ta;
@@ -121,19 +123,17 @@ SCONCE_FN real fieldExit(vec3 o, vec3 d)
 
 SCONCE_FN bool wasTried(SCONCE_IN(RayState) r, uint probe)
 {
-    for (int i = 0; i < r.triedCount; ++i)
-        if (r.tried[i] == probe) return true;
-    return false;
+    uvec4 p = uvec4(probe);
+    return any(equal(r.tried0, p)) || any(equal(r.tried1, p)) || any(equal(r.tried2, p));
 }
 
 /// Goes on in a probe, from t.
 SCONCE_FN void enterProbe(SCONCE_INOUT(RayState) r, uint probe, real t)
 {
-    if (r.triedCount < kMaxTried)
-    {
-        r.tried[r.triedCount] = probe;
-        ++r.triedCount;
-    }
+    r.tried2 = uvec4(r.tried1.w, r.tried2.x, r.tried2.y, r.tried2.z);
+    r.tried1 = uvec4(r.tried0.w, r.tried1.x, r.tried1.y, r.tried1.z);
+    r.tried0 = uvec4(probe, r.tried0.x, r.tried0.y, r.tried0.z);
+    ++r.triedCount;
     ++r.handoffs;
     r.probe = probe;
     ProbeHeader header = probeHeader(probe);
@@ -164,7 +164,9 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
         }
         if (r.t > r.tClear + real(1e-4) * real(field.diagonal) && r.triedCount > 0)
         {
-            r.tried[0] = r.tried[r.triedCount - 1];
+            r.tried0 = uvec4(r.tried0.x, kNoProbe, kNoProbe, kNoProbe);
+            r.tried1 = uvec4(kNoProbe);
+            r.tried2 = uvec4(kNoProbe);
             r.triedCount = 1;
             r.tClear = r.t;
         }
@@ -176,8 +178,9 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
     {
         real ahead = opinion ? real(-0.02) : (list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75)));
         uvec4 ranked = rankedProbesAt(r.origin + (r.t + ahead * real(field.voxel)) * r.direction, r.indexReads);
-        for (int k = 0; k < quality.ranked; ++k)
+        for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
         {
+            if (k >= quality.ranked) break;
             if (opinion)
             {
                 vec3 to = r.origin + r.t * r.direction - vec3(probeHeader(ranked[k]).centre);
@@ -620,7 +623,9 @@ SCONCE_FN RayState beginRay(vec3 origin, vec3 direction)
     r.segments = 0;
     r.face = 0;
     r.fresh = true;
-    for (int i = 0; i < kMaxTried; ++i) r.tried[i] = kNoProbe;
+    r.tried0 = uvec4(kNoProbe);
+    r.tried1 = uvec4(kNoProbe);
+    r.tried2 = uvec4(kNoProbe);
     return r;
 }
 
