@@ -124,6 +124,56 @@ TEST(ProbeTrace, ResultDoesNotDependOnTheLevelsUsed)
         }
 }
 
+TEST(ProbeTrace, FarBoundsChangeReadsAndNothingElse)
+{
+    const RaySet set = cornellRays(10000);
+    const auto expected = traceAll<float>(cornell(), set, defaultQuality());
+    gpu::TraceQuality quality = defaultQuality();
+    quality.farBounds = 1;
+    const auto got = traceAll<float>(cornell(), set, quality);
+    size_t different = 0, reads = 0;
+    for (size_t i = 0; i < got.size(); ++i)
+    {
+        different += got[i].status != expected[i].status || got[i].t != expected[i].t || got[i].handoffs != expected[i].handoffs;
+        reads += got[i].distanceReads != expected[i].distanceReads;
+    }
+    EXPECT_EQ(different, 0u);
+    EXPECT_GT(reads, set.size() / 100) << "the far bounds were not read";
+}
+
+// A wall of small steps far from one probe and near another: the far one's texels are as large as the steps.
+TEST(ProbeTrace, SecondOpinionOfANearerProbeIsMoreExact)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t wall = mesh.material("wall", vec3(0.5f));
+    mesh.box({-8, 0, -2}, {8, 3, 2}, wall);
+    for (int i = 0; i < 20; ++i) // boxes of 5 to 15 cm on the far end
+    {
+        const float y = 0.15f * float(i), depth = 0.05f + 0.1f * float(i * 7 % 10) / 10.0f;
+        mesh.box({8.0f - depth, y, -2.0f}, {8.0f, y + 0.075f, 2.0f}, wall);
+    }
+    Traced traced(std::move(scene), std::vector{vec3(-7.0f, 1.4f, 0.1f), vec3(6.5f, 1.6f, -0.2f)}, 64);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> across(-1.0f, 1.0f);
+    std::vector<vec3> origins, directions;
+    for (int i = 0; i < 4000; ++i)
+    {
+        const vec3 from(-6.0f + across(random), 1.5f + across(random), 1.5f * across(random));
+        const vec3 to(8.0f, 1.5f + 1.4f * across(random), 1.9f * across(random));
+        origins.push_back(from);
+        directions.push_back(glm::normalize(to - from));
+    }
+    const RaySet set = raySetFrom(traced.rays, origins, directions);
+    gpu::TraceQuality without = defaultQuality();
+    without.opinion = 0.0f;
+    const TraceScore one = scoreTraces(set, traceAll<float>(traced, set, without));
+    const TraceScore two = scoreTraces(set, traceAll<float>(traced, set, defaultQuality()));
+    EXPECT_GT(two.right02, one.right02 + 0.02);
+    EXPECT_GE(two.right1, one.right1);
+    EXPECT_LT(two.handoffs.mean, one.handoffs.mean + 1.0);
+}
+
 TEST(ProbeTrace, FloatAgreesWithDouble)
 {
     const RaySet set = cornellRays(10000);
