@@ -392,9 +392,10 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
     if (header.version != kFieldFileVersion)
     {
         row("header", 0, sizeof(Header), "format version " + std::to_string(header.version));
-        return Error{ErrorCode::badInput, "Light field '" + reader.name + "' has format version " + std::to_string(header.version) +
-                                              "; this program reads version " + std::to_string(kFieldFileVersion) +
-                                              ". Use a newer Sconce, or bake it again."};
+        return Error{ErrorCode::badInput,
+                     "Light field '" + reader.name + "' has format version " + std::to_string(header.version) +
+                         "; this program reads version " + std::to_string(kFieldFileVersion) +
+                         (header.version > kFieldFileVersion ? ". Use a newer Sconce, or bake it again." : ". Bake it again.")};
     }
     if (header.fileBytes != reader.size)
         return damaged("header", 0, sizeof(Header),
