@@ -37,28 +37,28 @@ TEST(FreeSpace, ClosedRoomIsFreeUpToItsWalls)
     EXPECT_NEAR(space.volume, 24.0, 24.0 * 0.12);
 }
 
-// Two rooms of 4 m, both sides of every surface visible, with a hollow wall of 0.3 m between them that is open to the first room through a
+// Two rooms of 4 m, both sides of every surface visible, with a hollow wall of 0.2 m between them that is open to the first room through a
 // slit under the ceiling, and a doorway of 1 m through it.
 TEST(FreeSpace, HollowWallsAreNotEnteredButDoorwaysAre)
 {
     Scene scene = emptyScene();
     scene.materials[0].doubleSided = true;
-    addRoom(scene, {0, 0, 0}, {8.3f, 3, 4});
-    for (const float x : {4.0f, 4.3f})
+    addRoom(scene, {0, 0, 0}, {8.2f, 3, 4});
+    for (const float x : {4.0f, 4.2f})
         for (const auto& [low, high] :
-             {std::pair{vec3(x, 0, 0), vec3(x, x < 4.1f ? 2.9f : 3.0f, 1)}, {vec3(x, 0, 2), vec3(x, 3, 4)}, {vec3(x, 2, 1), vec3(x, 3, 2)}})
+             {std::pair{vec3(x, 0, 0), vec3(x, x < 4.1f ? 2.7f : 3.0f, 1)}, {vec3(x, 0, 2), vec3(x, 3, 4)}, {vec3(x, 2, 1), vec3(x, 3, 2)}})
             addQuad(scene, low, {0, high.y - low.y, 0}, {0, 0, high.z - low.z});
-    addQuad(scene, {4, 0, 1}, {0.3f, 0, 0}, {0, 2, 0}); // the door's frame
-    addQuad(scene, {4, 0, 2}, {0.3f, 0, 0}, {0, 2, 0});
-    addQuad(scene, {4, 2, 1}, {0.3f, 0, 0}, {0, 0, 1});
+    addQuad(scene, {4, 0, 1}, {0.2f, 0, 0}, {0, 2, 0}); // the door's frame
+    addQuad(scene, {4, 0, 2}, {0.2f, 0, 0}, {0, 2, 0});
+    addQuad(scene, {4, 2, 1}, {0.2f, 0, 0}, {0, 0, 1});
     scene.cameras.push_back({});
     scene.cameras.back().eye = {2, 1.5f, 2};
     const FreeSpace space = spaceOf(scene, {}, 400000);
     EXPECT_TRUE(space.contains({2, 1, 2}));
-    EXPECT_TRUE(space.contains({4.15f, 1, 1.5f})); // in the doorway
+    EXPECT_TRUE(space.contains({4.1f, 1, 1.5f})); // in the doorway
     EXPECT_TRUE(space.contains({6, 1, 2}));
-    EXPECT_FALSE(space.contains({4.15f, 1, 0.5f})); // in the wall
-    EXPECT_FALSE(space.contains({4.15f, 1.5f, 3.5f}));
+    EXPECT_FALSE(space.contains({4.1f, 1, 0.5f})); // in the wall
+    EXPECT_FALSE(space.contains({4.1f, 1.5f, 3.5f}));
 }
 
 // Two rooms like those of a game map: single-sided walls, one of them with a hole to the void between the rooms. The void is joined to the
