@@ -41,10 +41,19 @@ inline FieldData dividedBox(uint32_t faceSize, uint32_t probes = 2)
                             v = 2.0f * (float(i / faceSize) + 0.5f) / float(faceSize) - 1.0f;
                 const vec3 d = text.faceDirection(face, vec3(u, v, 1.0f));
                 float w = 1e9f;
+                vec3 wall(0.0f); // the axis whose wall is met, in the face's coordinates
                 for (int a = 0; a < 3; ++a)
-                    if (d[a] != 0.0f) w = std::min(w, ((d[a] > 0.0f ? high[a] : low[a]) - centre[a]) / d[a]);
+                {
+                    const float to = d[a] != 0.0f ? ((d[a] > 0.0f ? high[a] : low[a]) - centre[a]) / d[a] : w;
+                    if (to >= w) continue;
+                    w = to;
+                    wall = vec3(0.0f);
+                    wall[a] = d[a] > 0.0f ? 1.0f : -1.0f;
+                }
+                wall = text.faceCoordinates(face, wall);
+                const float perTexel = 2.0f / (float(faceSize) * glm::dot(wall, vec3(u, v, 1.0f)));
                 field.distance[size_t(probe) * field.info.wordsPerProbe + size_t(face) * (field.info.wordsPerProbe / 6) + i] =
-                    text.packTexel(field.info.scale / w, 0.0f, 0.0f);
+                    text.packTexel(field.info.scale / w, wall.x * perTexel, wall.y * perTexel);
             }
         summariseProbe(field, probe);
     }
