@@ -25,8 +25,9 @@ namespace sconce
 namespace
 {
 
-constexpr size_t kLeastViewpoints = 8; // cameras and interior points the rays' surfaces are seen from
-constexpr size_t kLeastInterior = 6;   // of them in the reachable space
+constexpr size_t kLeastViewpoints =
+    64; // cameras and interior points the rays' surfaces are seen from: with 8, shares move by a point with the seed
+constexpr size_t kLeastInterior = 6; // of them in the reachable space
 
 struct Options
 {

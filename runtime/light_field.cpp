@@ -105,7 +105,7 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     auto probes = gpu.makeBufferWith<gpu::ProbeHeader>(field.probes, 0, "probe headers");
     if (!probes) return probes.error();
     made.probes = std::move(*probes);
-    auto block = gpu.makeBuffer(sizeof(FieldBlock), 0, MemoryUse::device, "light field block");
+    auto block = gpu.makeBuffer(sizeof(FieldBlock), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "light field block");
     if (!block) return block.error();
     made.block = std::move(*block);
     Octree empty; // a field of the octahedral baseline has none; the binding still wants an image
@@ -117,7 +117,7 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     made.bytes += made.probes.size() + made.block.size() + field.octree.bytes();
 
     const DescriptorSet::Binding bindings[] = {
-        {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);

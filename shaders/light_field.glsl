@@ -11,7 +11,7 @@
 
 // The maps are read through addresses: one probe set may exceed what a storage buffer descriptor can span (128 MiB on software Vulkan).
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SconceWords { uint word[]; };
-layout(scalar, set = SCONCE_FIELD_SET, binding = 0) readonly buffer SconceField
+layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
 {
     LightFieldInfo field;
     TraceQuality quality;

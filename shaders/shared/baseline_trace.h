@@ -10,7 +10,6 @@ SCONCE_CONST bool kFromOctree = kBaseline == kBaselineB0PlusOctree || kBaseline 
 SCONCE_CONST int kB0Tries = 8;        // probes of a cell
 SCONCE_CONST int kBaselineLimit = 64; // probes of a ray, over all cells
 SCONCE_CONST int kListLimit = 25;     // the same of one whose probes come from lists
-SCONCE_CONST int kListTried = 12;     // probes remembered as tried without progress
 
 struct BaselineChoice
 {
@@ -20,8 +19,7 @@ struct BaselineChoice
     int corner;
     int tries;
     // lists
-    uint tried[kListTried];
-    int triedCount;
+    TriedProbes tried;
     real tClear; // t at which the tried set was last cleared
     int indexReads;
 };
@@ -76,7 +74,7 @@ SCONCE_FN BaselineChoice beginChoice(vec3 origin)
     c.cell = ivec3(0, 0, 0);
     c.corner = 0;
     c.tries = 0;
-    c.triedCount = 0;
+    c.tried = noneTried();
     c.tClear = real(0.0);
     c.indexReads = 0;
     if (!kFromOctree)
@@ -112,10 +110,9 @@ SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at)
 /// The lists' best probe not yet tried at t. False: there is none.
 SCONCE_FN bool nextOfLists(SCONCE_INOUT(BaselineChoice) c, vec3 origin, vec3 direction, real t)
 {
-    if (t > c.tClear + real(1e-4) * real(field.diagonal) && c.triedCount > 0)
+    if (t > c.tClear + real(1e-4) * real(field.diagonal))
     {
-        c.tried[0] = c.tried[c.triedCount - 1];
-        c.triedCount = 1;
+        keepLastTried(c.tried);
         c.tClear = t;
     }
     for (int list = 0; list < 3; ++list)
@@ -124,13 +121,10 @@ SCONCE_FN bool nextOfLists(SCONCE_INOUT(BaselineChoice) c, vec3 origin, vec3 dir
         uvec4 ranked = rankedProbesAt(origin + (t + ahead * real(field.voxel)) * direction, c.indexReads);
         for (int k = 0; k < kRanked; ++k)
         {
-            bool known = false;
-            for (int i = 0; i < c.triedCount; ++i) known = known || c.tried[i] == ranked[k];
-            if (known) continue;
-            if (c.triedCount >= kListTried) return false;
+            if (wasTried(c.tried, ranked[k])) continue;
+            if (c.tried.count >= kMaxTried) return false;
             c.probe = ranked[k];
-            c.tried[c.triedCount] = c.probe;
-            ++c.triedCount;
+            addTried(c.tried, c.probe);
             return true;
         }
     }
@@ -144,6 +138,7 @@ SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
     real ahead = kPublished ? real(0.001) / real(field.scale) : real(0.0);
     vec3 origin = from + ahead * direction;
     TraceResult result;
+    result.confidence = real(0.0); // the opponents have none
     result.status = kUnknown;
     result.probe = kNoProbe;
     result.face = -1;
@@ -232,6 +227,7 @@ SCONCE_FN RayHit baselineQuery(vec3 origin, vec3 direction)
         r.handoffs = 0;
         r.distanceReads = 0;
         r.indexReads = 0;
+        r.confidence = real(0.0);
     }
     else r = baselineTrace((origin - vec3(field.origin)) / real(field.scale), direction);
     vec3 normal = vec3(real(0.0));

@@ -18,12 +18,12 @@ SCONCE_FN int chainTop(uint size)
 
 SCONCE_FN uint chainWidth(uint size, int level) { return (size + (1u << level) - 1u) >> level; }
 
-/// First word of a level, relative to the face. Every level below the last is exact: a geometric series.
+/// First word of a level, relative to the face; every level below the last is exact.
 SCONCE_FN uint chainOffset(uint size, int level)
 {
-    if (level == 0) return 0u;
-    uint finer = size >> (level - 2);
-    return (size * size - finer * finer) / 15u * 16u + finer * finer;
+    uint words2 = (size >> 2) * (size >> 2);
+    uint words4 = (size >> 4) * (size >> 4);
+    return (level > 0 ? size * size : 0u) + (level > 2 ? words2 : 0u) + (level > 4 ? words4 : 0u);
 }
 
 /// Cells of levels 2, 4, ... top.

@@ -97,8 +97,9 @@ struct RayHit
     int handoffs;
     int distanceReads;
     int indexReads;
+    float confidence; // [0,1]: about the chance that a hit is within 0.2 % of the diagonal of the truth, or that a miss is one; 0: unknown
 };
-SCONCE_CHECK_SIZE(RayHit, 60);
+SCONCE_CHECK_SIZE(RayHit, 64);
 
 SCONCE_STRUCTS_END
 #endif

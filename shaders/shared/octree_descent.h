@@ -39,3 +39,47 @@ SCONCE_FN uvec4 rankedProbesAt(vec3 p, SCONCE_INOUT(int) reads)
     }
     return texel;
 }
+
+SCONCE_CONST int kMaxTried = 12; // probes remembered as tried without progress: three lists of four
+
+/// The probes a ray has asked at one place, newest first. Vectors: an array indexed by each lane is slow where lanes are vectors.
+struct TriedProbes
+{
+    uvec4 newest;
+    uvec4 middle;
+    uvec4 oldest;
+    int count;
+};
+
+SCONCE_FN TriedProbes noneTried()
+{
+    TriedProbes tried;
+    tried.newest = uvec4(kNoProbe);
+    tried.middle = uvec4(kNoProbe);
+    tried.oldest = uvec4(kNoProbe);
+    tried.count = 0;
+    return tried;
+}
+
+SCONCE_FN bool wasTried(SCONCE_IN(TriedProbes) tried, uint probe)
+{
+    uvec4 p = uvec4(probe);
+    return any(equal(tried.newest, p)) || any(equal(tried.middle, p)) || any(equal(tried.oldest, p));
+}
+
+SCONCE_FN void addTried(SCONCE_INOUT(TriedProbes) tried, uint probe)
+{
+    tried.oldest = uvec4(tried.middle.w, tried.oldest.x, tried.oldest.y, tried.oldest.z);
+    tried.middle = uvec4(tried.newest.w, tried.middle.x, tried.middle.y, tried.middle.z);
+    tried.newest = uvec4(probe, tried.newest.x, tried.newest.y, tried.newest.z);
+    ++tried.count;
+}
+
+/// Forgets all but the last, when the ray has moved on.
+SCONCE_FN void keepLastTried(SCONCE_INOUT(TriedProbes) tried)
+{
+    uint last = tried.newest.x;
+    if (tried.count == 0) return;
+    tried = noneTried();
+    addTried(tried, last);
+}

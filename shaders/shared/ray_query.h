@@ -19,6 +19,7 @@ SCONCE_FN RayHit answer(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r, v
     hit.handoffs = r.handoffs;
     hit.distanceReads = r.distanceReads;
     hit.indexReads = r.indexReads;
+    hit.confidence = float(r.confidence);
     return hit;
 }
 

@@ -8,7 +8,8 @@
 
 SCONCE_CONST real kGradientScale = real(0.15);
 
-SCONCE_FN real halfToReal(uint bits) { return real(unpackHalf2x16(bits & 0xffffu).x); }
+/// Of the lower 16 bits.
+SCONCE_FN real halfToReal(uint bits) { return real(unpackHalf2x16(bits).x); }
 
 /// Half float bits of a non-negative number, to nearest, saturated at the largest half.
 SCONCE_FN uint realToHalf(real value) { return packHalf2x16(vec2f(float(min(value, real(65504.0))), 0.0f)) & 0xffffu; }
@@ -33,12 +34,11 @@ SCONCE_FN uint packGradient(real g)
     return uint(g < real(0.0) ? -byte : byte) & 0xffu;
 }
 
+/// Of the lowest byte.
 SCONCE_FN real unpackGradient(uint byte)
 {
-    int value = int(byte & 0xffu);
-    if (value > 127) value -= 256;
-    real s = real(value) / real(127.0);
-    return kGradientScale * s * abs(s);
+    real s = real(int(byte << 24) >> 24);
+    return (kGradientScale / real(16129.0)) * s * abs(s); // 127^2
 }
 
 SCONCE_FN uint packTexel(real q, real gx, real gy)

@@ -124,6 +124,35 @@ TEST(ProbeTrace, ResultDoesNotDependOnTheLevelsUsed)
         }
 }
 
+TEST(ProbeTrace, ConfidenceIsAboutTheShareThatIsRight)
+{
+    const RaySet set = cornellRays(20000);
+    const float tolerance = 0.002f * set.diagonal;
+    twin::LightFieldTwin<float> text(cornell().field, defaultQuality());
+    double sum = 0.0, right = 0.0, answered = 0.0, sure = 0.0, sureRight = 0.0;
+    for (size_t i = 0; i < set.size(); ++i)
+    {
+        const gpu::RayHit hit = text.queryRay(set.origins[i], set.directions[i]);
+        ASSERT_GE(hit.confidence, 0.0f);
+        ASSERT_LE(hit.confidence, 1.0f);
+        if (hit.status == 2u)
+        {
+            EXPECT_EQ(hit.confidence, 0.0f);
+            continue;
+        }
+        const bool isRight = hit.status == 1u ? set.truth[i].hit && std::abs(hit.t - set.truth[i].t) <= tolerance : !set.truth[i].hit;
+        ++answered;
+        sum += hit.confidence;
+        right += isRight;
+        if (hit.confidence < 0.95f) continue;
+        ++sure;
+        sureRight += isRight;
+    }
+    EXPECT_NEAR(sum / answered, right / answered, 0.03);
+    ASSERT_GT(answered - sure, 100.0);
+    EXPECT_LT((right - sureRight) / (answered - sure), sureRight / sure);
+}
+
 TEST(ProbeTrace, FarBoundsChangeReadsAndNothingElse)
 {
     const RaySet set = cornellRays(10000);
