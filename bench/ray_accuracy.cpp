@@ -286,9 +286,11 @@ int main(int argc, char** argv)
     CLI::App app{"Accuracy and speed of light field tracers on glossy rays, against Embree"};
     sconce::Options options;
     app.add_option("SCENE", options.scene, ".gltf, .glb or built-in name")->required();
-    app.add_option("--field", options.fields,
-                   "[TRACER=]FILE, a baked light field and what traces it: ours, b0, b0plus, b0plus-octree or wang; b0plus/8 gives the low "
-                   "factor (default: b0plus for octahedral maps on a grid, b0plus-octree for others, else ours); repeatable")
+    app.add_option(
+           "--field", options.fields,
+           "[TRACER=]FILE, a baked light field and what traces it: ours, b0, b0plus, b0plus-octree or wang; ours/ranked:2,opinion:0 "
+           "sets knobs, b0plus/8 the low factor (default: b0plus for octahedral maps on a grid, b0plus-octree for others, else ours); "
+           "repeatable")
         ->required();
     app.add_option("--rays", options.rays, "rays (default: 100000; range: 1 to 10000000)")->check(CLI::Range(1u, 10000000u));
     app.add_option("--runs", options.runs, "timed runs; 0 takes no times (default: 0; range: 0 to 1000)")->check(CLI::Range(0u, 1000u));

@@ -5,8 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <sstream>
+#include <variant>
 
 #include "bench/random.h"
+#include "runtime/face_chain_text.h"
 #include "runtime/light_field_file.h"
 #include "runtime/quality.h"
 #include "runtime/tracer_cpu.h"
@@ -22,12 +25,40 @@ constexpr double kMebibyte = 1024.0 * 1024.0;
 struct Spelled
 {
     std::string tracer, file; // tracer is empty when the field is to tell
+    std::string knobs;        // of ours, after the slash
     uint32_t lowFactor = 0;
 };
 
+/// Sets knobs from NAME:VALUE,...; the field's creation checks their ranges.
+Status setKnobs(gpu::TraceQuality& quality, const std::string& knobs)
+{
+    const std::pair<std::string_view, std::variant<int*, float*>> known[] = {
+        {"ranked", &quality.ranked},         {"maxHandoffs", &quality.maxHandoffs},
+        {"startLevel", &quality.startLevel}, {"coarsestLevel", &quality.coarsestLevel},
+        {"tolerance", &quality.tolerance},   {"epsilon", &quality.epsilon},
+        {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds}};
+    std::istringstream list(knobs);
+    for (std::string knob; std::getline(list, knob, ',');)
+    {
+        const size_t colon = std::min(knob.find(':'), knob.size());
+        const std::string_view name = std::string_view(knob).substr(0, colon);
+        const auto found = std::ranges::find(known, name, [](const auto& entry) { return entry.first; });
+        if (found == std::end(known))
+            return Error{ErrorCode::badArgument, "'" + std::string(name) +
+                                                     "' is no knob of the tracer; give ranked, maxHandoffs, startLevel, "
+                                                     "coarsestLevel, tolerance, epsilon, opinion or farBounds"};
+        const char* begin = knob.data() + std::min(colon + 1, knob.size());
+        const char* end = knob.data() + knob.size();
+        const auto read = std::visit([&](auto* value) { return std::from_chars(begin, end, *value); }, found->second);
+        if (begin == end || read.ec != std::errc() || read.ptr != end)
+            return Error{ErrorCode::badArgument, "'" + knob + "' has no number after its colon; write NAME:VALUE"};
+    }
+    return success();
+}
+
 Result<Spelled> parse(const std::string& what)
 {
-    Spelled out{{}, what, 0};
+    Spelled out{{}, what, {}, 0};
     const size_t equals = what.find('=');
     if (equals == std::string::npos) return out;
     out.tracer = what.substr(0, equals);
@@ -35,6 +66,12 @@ Result<Spelled> parse(const std::string& what)
     if (const size_t slash = out.tracer.find('/'); slash != std::string::npos)
     {
         const std::string factor = out.tracer.substr(slash + 1);
+        if (out.tracer.compare(0, slash, "ours") == 0)
+        {
+            out.tracer.resize(slash);
+            out.knobs = factor;
+            return out;
+        }
         const char* end = factor.data() + factor.size();
         if (std::from_chars(factor.data(), end, out.lowFactor).ptr != end || out.lowFactor == 0)
             return Error{ErrorCode::badArgument, "'" + factor + "' in '" + what + "' is no low factor; give 8, 16 or 32"};
@@ -70,6 +107,7 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
     if (!spelled) return spelled.error();
     std::unique_ptr<TracedMethod> made(new TracedMethod(gpu));
     made->path = spelled->file;
+    if (auto status = setKnobs(made->quality.trace, spelled->knobs); !status) return status.error();
     auto data = loadField(spelled->file);
     if (!data) return data.error();
     const bool octahedral = data->info.chart == gpu::kChartOctahedral;
@@ -81,11 +119,12 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
         return Error{ErrorCode::badInput,
                      "Tracer ours needs cube probes; '" + spelled->file + "' has octahedral ones. Bake with --chart cube."};
     made->label = made->opponent ? std::string(baselineName(*made->opponent)) : "ours";
+    if (!spelled->knobs.empty()) made->label.append("/").append(spelled->knobs);
     if (spelled->lowFactor) made->label.append("/").append(std::to_string(spelled->lowFactor));
     if (made->opponent) data = baselineField(std::move(*data), *made->opponent, spelled->lowFactor);
     if (!data) return Error{data.error().code, "'" + spelled->file + "': " + data.error().message};
     made->field = std::move(*data);
-    auto onDevice = LightField::create(gpu, made->field);
+    auto onDevice = LightField::create(gpu, made->field, made->quality);
     if (!onDevice) return onDevice.error();
     made->onDevice.emplace(std::move(*onDevice));
     auto tracer = RayTracer::create(gpu, *made->onDevice, made->opponent ? traceRaysPass(*made->opponent) : Spirv());
@@ -99,7 +138,10 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
 
 double TracedMethod::traceMebibytes() const
 {
-    return double(field.info.wordsPerProbe) * sizeof(uint32_t) / kMebibyte;
+    uint32_t words = field.info.wordsPerProbe;
+    if (!opponent && quality.trace.farBounds == 0) // they are there, and not read
+        words = 6 * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
+    return double(words) * sizeof(uint32_t) / kMebibyte;
 }
 
 double TracedMethod::radianceMebibytes() const
@@ -126,7 +168,7 @@ void TracedMethod::traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::Ray
     parallelFor((rays.size() + kBatch - 1) / kBatch,
                 [&](size_t batch)
                 {
-                    twin::LightFieldTwin<float> text(field, Quality{}.trace);
+                    twin::LightFieldTwin<float> text(field, quality.trace);
                     for (size_t i = batch * kBatch; i < std::min(rays.size(), (batch + 1) * kBatch); ++i)
                         hits[i] = text.queryRay(rays[i].origin, rays[i].direction);
                 });

@@ -26,8 +26,9 @@ std::vector<uint32_t> shuffledOrder(size_t count, uint64_t seed);
 class TracedMethod
 {
 public:
-    /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours` or an opponent's name, which /F may follow for a low factor of F texels
-    ///              (b0plus/8=grid.sconce). Without a name: b0plus for octahedral maps on a grid, b0plus-octree for others, else ours.
+    /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours`, which knobs of TraceQuality may follow (ours/ranked:2,opinion:0=F), or
+    ///              an opponent's name, which a low factor in texels may follow (b0plus/8=grid.sconce). Without a name: b0plus for octahedral
+    ///              maps on a grid, b0plus-octree for others, else ours.
     static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, const std::string& what);
 
     const std::string& name() const { return label; }
@@ -51,6 +52,7 @@ private:
     Gpu& gpu;
     std::string label, path;
     std::optional<Baseline> opponent;
+    Quality quality;
     FieldData field;
     std::optional<LightField> onDevice;
     std::optional<RayTracer> tracer;

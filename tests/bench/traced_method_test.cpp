@@ -43,6 +43,9 @@ TEST_F(TracedMethodOf, AMisspeltTracerOrMissingFileIsASentence)
     EXPECT_NE(complaint("b1=x.sconce").find("'b1'"), std::string::npos);
     EXPECT_NE(complaint("b0/x=x.sconce").find("'x'"), std::string::npos);
     EXPECT_NE(complaint("b0=nowhere.sconce").find("nowhere.sconce"), std::string::npos);
+    EXPECT_NE(complaint("ours/rank:2=x.sconce").find("'rank'"), std::string::npos);
+    EXPECT_NE(complaint("ours/ranked:two=x.sconce").find("'ranked:two'"), std::string::npos);
+    EXPECT_NE(complaint("ours/ranked:2,opinion:0.5=nowhere.sconce").find("nowhere.sconce"), std::string::npos);
 }
 
 } // namespace
