@@ -28,6 +28,7 @@ template <class Real> struct LightFieldTwin
     using ProbeHeader = gpu::ProbeHeader;
     using TraceQuality = gpu::TraceQuality;
     static constexpr uint kNoProbe = gpu::kNoProbe;
+    static constexpr uint kChartCube = gpu::kChartCube;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
 

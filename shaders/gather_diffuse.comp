@@ -15,7 +15,7 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
     Pixel p = readPixel(at);
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     if (p.surface && p.brdf.metallic < 1.0)
     {
         vec3 point = (p.position - field.origin) / field.scale;
@@ -25,9 +25,8 @@ void main()
             vec2 along = (randomPair(uvec2(at), i, 1u, frame.seed) - 0.5) * 2.0 * field.voxel;
             int reads = 0;
             vec3 lookUp = point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal;
-            sum += irradianceAt(point, p.normal, lookUp, reads);
+            sum += weightedIrradianceAt(point, p.normal, lookUp, reads);
         }
-        sum /= float(kLookUps);
     }
-    imageStore(diffuse, at, vec4(sum, 1.0));
+    imageStore(diffuse, at, vec4(lightOf(sum), 1.0));
 }

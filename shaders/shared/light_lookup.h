@@ -102,13 +102,36 @@ SCONCE_FN vec2 probeMoments(uint probe, vec3 d)
     return sum;
 }
 
+/// Whether a probe's map (cube chart) knows a surface between the probe and a point, relative to its centre. A wall thinner than the spread
+/// of the distances about it is nothing to Chebyshev's bound; to the plane of its texel it is one. 0.2 %: what a packed plane is off by.
+SCONCE_FN bool hiddenFromProbe(uint probe, vec3 p)
+{
+    int face = dominantFace(p);
+    vec3 uvw = faceCoordinates(face, p);
+    if (field.chart != kChartCube || !(uvw.z > real(1e-6))) return false;
+    real last = real(field.faceSize) - real(1.0);
+    real x = real(0.5) * real(field.faceSize) * (uvw.x / uvw.z + real(1.0));
+    real y = real(0.5) * real(field.faceSize) * (uvw.y / uvw.z + real(1.0));
+    real ix = clamp(floor(x), real(0.0), last);
+    real iy = clamp(floor(y), real(0.0), last);
+    uint word = distanceWord(probe * field.wordsPerProbe + uint(face) * (field.wordsPerProbe / 6u) + uint(iy) * field.faceSize + uint(ix));
+    real slope = unpackGradient(word >> 16) * (x - ix - real(0.5)) + unpackGradient(word >> 24) * (y - iy - real(0.5));
+    real q = halfToReal(word) * (real(1.0) + slope);
+    return uvw.z * q > real(1.002);
+}
+
 /// Cosine-weighted mean of the radiance arriving at a surface point (irradiance / pi; multiply by the diffuse albedo), from the probes of
 /// its leaf. Weights: wrapped cosine towards the probe (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced
-/// Irradiance Fields"), Chebyshev visibility from the distance moments (McGuire et al. 2017, section 5.2; cubed as in the former), and
-/// the inverse square of the distance, since the probes are no grid.
+/// Irradiance Fields"), Chebyshev visibility from the distance moments (McGuire et al. 2017, section 5.2; cubed as in the former), nothing
+/// from a probe whose map shows a surface before the point, and the inverse square of the distance, since the probes are no grid.
+/// Nothing for a point or normal that is not finite, and for a normal without length.
 /// @param lookUp  point whose leaf is asked; the caller may dither it about the point to hide borders of voxels
-SCONCE_FN vec3 irradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
+/// @return  rgb sum of weight times light, w sum of the weights: look-ups are added before they are divided, so that a leaf behind a wall,
+///          whose probes are all hidden, has no say
+SCONCE_FN vec4 weightedIrradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
 {
+    real length2 = dot(normal, normal);
+    if (!(length2 > real(1e-12)) || !(length2 + dot(point, point) < real(1e18))) return vec4(real(0.0));
     uvec4 ranked = rankedProbesAt(lookUp, reads);
     vec3 sum = vec3(real(0.0));
     real weights = real(0.0);
@@ -121,20 +144,30 @@ SCONCE_FN vec3 irradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(i
         vec3 toProbe = vec3(probeHeader(ranked[k]).centre) - biased;
         real distance2 = max(dot(toProbe, toProbe), real(1e-12));
         real distance = sqrt(distance2);
-        vec3 direction = toProbe / distance;
+        vec3 direction = distance2 > real(1e-12) ? toProbe / distance : normal; // at the centre any direction will do
         real wrap = real(0.5) * dot(direction, normal) + real(0.5);
         real weight = wrap * wrap + real(0.02);
         vec2 moments = probeMoments(ranked[k], -direction);
         if (distance > moments.x)
         {
             real beyond = distance - moments.x;
-            real spread = moments.y + real(1e-6);
+            real spread = max(moments.y, real(0.0)) + real(1e-6);
             real chebyshev = spread / (spread + beyond * beyond);
             weight *= chebyshev * chebyshev * chebyshev;
         }
+        if (hiddenFromProbe(ranked[k], -toProbe)) weight = real(0.0);
         weight = max(weight, real(1e-6)) / (distance2 + real(field.voxel) * real(field.voxel));
         sum += weight * probeIrradiance(ranked[k], normal);
         weights += weight;
     }
-    return sum / max(weights, real(1e-12));
+    return vec4(sum, weights);
+}
+
+/// The light of weightedIrradianceAt: its sum over its weights.
+SCONCE_FN vec3 lightOf(vec4 weighted) { return vec3(weighted) / max(weighted.w, real(1e-30)); }
+
+/// Cosine-weighted mean of the radiance arriving at a surface point by one look-up; see weightedIrradianceAt.
+SCONCE_FN vec3 irradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    return lightOf(weightedIrradianceAt(point, normal, lookUp, reads));
 }
