@@ -78,6 +78,10 @@ template <class Real> struct LightFieldTwin
 
 #include "shaders/shared/face_chain.h"
 
+#include "shaders/shared/ray_state.h"
+
+#include "shaders/shared/face_march.h"
+
 #include "shaders/shared/probe_trace.h"
 
 #include "shaders/shared/light_lookup.h"

@@ -37,6 +37,8 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/color.h"
 #include "shared/octree_descent.h"
 #include "shared/face_chain.h"
+#include "shared/ray_state.h"
+#include "shared/face_march.h"
 #include "shared/probe_trace.h"
 #include "shared/light_lookup.h"
 #include "shared/ray_query.h"
