@@ -27,8 +27,8 @@ class TracedMethod
 {
 public:
     /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours`, which knobs of TraceQuality may follow (ours/ranked:2,opinion:0=F), or
-    ///              an opponent's name, which a low factor in texels may follow (b0plus/8=grid.sconce). Without a name: b0plus for octahedral
-    ///              maps on a grid, b0plus-octree for others, else ours.
+    ///              an opponent's name, which a low factor in texels may follow (b0plus/8=grid.sconce). Without a name: b0plus for
+    ///              octahedral maps on a grid, b0plus-octree for others, else ours.
     static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, const std::string& what);
 
     const std::string& name() const { return label; }

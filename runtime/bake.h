@@ -26,9 +26,9 @@ struct BakeSettings
 /// What a bake cost. Seconds are wall-clock.
 struct BakeReport
 {
-    double sceneSeconds = 0.0;  // upload and shadow maps
-    double probeSeconds = 0.0;  // faces, direct light, chains, first irradiance
-    double octreeSeconds = 0.0; // summaries and octree
+    double sceneSeconds = 0.0;   // upload and shadow maps
+    double probeSeconds = 0.0;   // faces, direct light, chains, first irradiance
+    double octreeSeconds = 0.0;  // summaries and octree
     bool octreeOnDevice = false; // else the maps didn't fit the device's memory and the host built it: the same bytes, later
     double bounceSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;

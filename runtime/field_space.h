@@ -11,8 +11,8 @@ namespace sconce
 /// world's origin lose nothing when it is subtracted.
 gpu::LightFieldInfo fieldSpace(const Bounds& sceneBounds);
 
-/// Fills the coarser levels of one face from its level 0 words. Invariant: a texel's (max, min) covers every surfel plane over every texel
-/// below it. CPU twin of shaders/bake_chain.comp.
+/// Fills the coarser levels of one face, and their far bounds, from its level 0 words. Invariant: no surfel plane of a texel rises above
+/// the bounding planes of the cells over it, nor falls behind their far bounds (face_chain.h). CPU twin of shaders/bake_chain.comp.
 void buildChain(uint32_t* faceWords, uint32_t faceSize);
 
 /// Fills freeRadius, farthest and the influence box (median distance per cube face, Wang et al. 2019, section 4.1) of one probe from its

@@ -73,9 +73,10 @@ void addBakeCommand(CLI::App& app, Context& context)
     options->scene.add(bake);
     bake->add_option("--probes", options->probes, "probes.json of `sconce place` (required)")->required()->type_name("FILE");
     bake->add_option("-o,--output", options->output, ".sconce file to write (required)")->required()->type_name("FILE");
-    bake->add_option("--resolution", settings.resolution,
-                     "Side of an octahedral map in texels; the cube chart's faces have half of it (416: the memory of an octahedral map of "
-                     "512); memory grows with its square (default: 512; range: 64 to 2048, power of two, or multiple of 32 with cube faces)")
+    bake->add_option(
+            "--resolution", settings.resolution,
+            "Side of an octahedral map in texels; the cube chart's faces have half of it (416: the memory of an octahedral map of "
+            "512); memory grows with its square (default: 512; range: 64 to 2048, power of two, or multiple of 32 with cube faces)")
         ->check(unlisted(CLI::Range(64u, 2048u)))
         ->type_name("TEXELS");
     bake->add_option("--bounces", settings.bounces,

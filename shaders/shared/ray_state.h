@@ -15,7 +15,7 @@ SCONCE_CONST uint kEventCrossing = 0u;  // ran into a surfel's plane
 SCONCE_CONST uint kEventFirst = 1u;     // was behind it from the start in this probe
 SCONCE_CONST uint kEventContinued = 2u; // came to it behind it, over a surface that goes on
 
-SCONCE_CONST int kMarchSteps = 16;    // march steps a turn of the state machine, before other lanes' events get their turn
+SCONCE_CONST int kMarchSteps = 16;   // march steps a turn of the state machine, before other lanes' events get their turn
 SCONCE_CONST int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
 
 struct RayState
