@@ -1,0 +1,97 @@
+// Every figure of a point that plots and tables can show: one table, from which axes, columns and tooltips are made.
+import { megabytes, number, percent } from "./format";
+import { isNumber, type Point } from "./results";
+
+export interface Figure {
+    key: string;
+    label: string;
+    short: string; // as a column's head
+    unit: string;
+    group: "time" | "rays" | "error" | "memory";
+    better?: "lower" | "higher";
+    show(value: unknown): string; // in `unit`
+    axis: number; // an axis shows value * axis
+    of(point: Point): number | null;
+}
+
+function path(point: Point, key: string): number | null {
+    let value: unknown = point;
+    for (const part of key.split(".")) value = typeof value === "object" && value !== null ? (value as Record<string, unknown>)[part] : undefined;
+    if (typeof value === "object" && value !== null) value = (value as Record<string, unknown>).median;
+    return isNumber(value) ? value : null;
+}
+
+type Rest = Partial<Pick<Figure, "better" | "of">>;
+
+function time(key: string, label: string, short = label, unit = "ms", rest: Rest = {}): Figure {
+    return { key, label, short, unit, group: "time", better: "lower", show: number, axis: 1, of: (point) => path(point, key), ...rest };
+}
+function share(key: string, label: string, short: string, better: Figure["better"], of?: Figure["of"]): Figure {
+    return { key, label, short, unit: "%", group: "rays", better, show: percent, axis: 100, of: of ?? ((point) => path(point, key)) };
+}
+function count(key: string, label: string, short: string, better?: Figure["better"]): Figure {
+    return { key, label, short, unit: "", group: "rays", better, show: number, axis: 1, of: (point) => path(point, key) };
+}
+function bytes(key: string, label: string, short: string): Figure {
+    return { key, label, short, unit: "MB", group: "memory", better: "lower", show: megabytes, axis: 1e-6, of: (point) => path(point, key) };
+}
+
+const kMetrics: [string, string][] = [["relmse", "relMSE"], ["mse", "MSE"], ["flip", "FLIP"]];
+const errors: Figure[] = ["glossy", "diffuse", "beauty"].flatMap((layer) =>
+    kMetrics.map(([metric, name]): Figure => {
+        const key = `error.${layer}.${metric}`;
+        return { key, label: `${name} of ${layer}`, short: `${layer} ${name}`, unit: "", group: "error", better: "lower", show: number, axis: 1, of: (point) => path(point, key) };
+    }),
+);
+
+/** The share of rays that is not right within 1 % of the diagonal; null for what has no rays. */
+function wrongRays(point: Point): number | null {
+    const right = path(point, "rays.right_1");
+    return right === null ? null : 1 - right;
+}
+
+export const figures: Figure[] = [
+    time("frame_ms", "frame time"),
+    time("trace_ms", "trace time"),
+    time("place_s", "placement time", "placement", "s"),
+    time("bake_s", "bake time", "bake", "s"),
+    count("rays.reads_mean", "texel reads a ray", "reads a ray", "lower"),
+    count("rays.reads_p95", "texel reads a ray, 95th percentile", "reads p95", "lower"),
+    count("rays.handoffs_mean", "hand-offs a ray", "hand-offs"),
+    share("rays.wrong", "wrong rays (not within 1 %)", "wrong rays", "lower", wrongRays),
+    share("rays.right_1", "right rays, within 1 % of the diagonal", "right 1 %", "higher"),
+    share("rays.right_02", "right rays, within 0.2 % of the diagonal", "right 0.2 %", "higher"),
+    share("rays.false", "false hits", "false", "lower"),
+    share("rays.leak", "leaks", "leak", "lower"),
+    share("rays.unresolved", "unresolved rays", "unresolved", "lower"),
+    count("rays.count", "rays traced", "rays"),
+    ...errors,
+    bytes("bytes.total", "memory", "memory"),
+    bytes("bytes.distance", "distance maps", "distance"),
+    bytes("bytes.normals", "normal maps", "normals"),
+    bytes("bytes.radiance", "radiance maps", "radiance"),
+    bytes("bytes.irradiance", "irradiance maps", "irradiance"),
+    bytes("bytes.index", "octree", "index"),
+    { key: "bake_peak_mb", label: "peak host memory of the bake", short: "bake peak", unit: "MB", group: "memory", better: "lower", show: number, axis: 1, of: (point) => path(point, "bake_peak_mb") },
+];
+
+const byKey = new Map(figures.map((figure) => [figure.key, figure]));
+
+/** Misuse: a key that is not in the table throws. */
+export function figure(key: string): Figure {
+    const found = byKey.get(key);
+    if (!found) throw new Error(`no figure ${key}`);
+    return found;
+}
+
+export function withUnit(of: Figure, value: unknown): string {
+    const text = of.show(value);
+    return isNumber(value) && of.unit ? `${text} ${of.unit}` : text;
+}
+
+export function headOf(of: Figure): string {
+    return of.unit ? `${of.short}, ${of.unit}` : of.short;
+}
+
+/** What a plot's upright axis can show. */
+export const errorFigures = figures.filter((of) => of.group === "error" || ["rays.wrong", "rays.false", "rays.leak", "rays.unresolved"].includes(of.key));

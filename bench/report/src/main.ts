@@ -1,0 +1,74 @@
+// The page of `sconce bench`: what is the same for every scene at the top, then the parts of the chosen scene.
+import { analysisSection } from "./analysis_section";
+import { h, section, segments } from "./dom";
+import { imagesSection } from "./images_section";
+import { machineSection } from "./machine_section";
+import { methodStyles } from "./methods";
+import { planSection } from "./plan_section";
+import { plotsSection } from "./plots_section";
+import { pointsSection } from "./points_section";
+import { loadResults, methodsOf, points, type Results, type Scene } from "./results";
+import { Store } from "./store";
+import { onSystemTheme, readAddress, setTheme, writeAddress, type Theme } from "./theme";
+import { hideTooltip } from "./tooltip";
+
+function build(page: HTMLElement, results: Results): void {
+    const scenes = results.scenes ?? [];
+    const styles = methodStyles([...new Set(scenes.flatMap(methodsOf))]);
+    let store = new Store();
+    const body = h("div", { id: "scene" });
+    const nav = h("nav", { "aria-label": "Parts of this page" });
+
+    const showScene = (scene: Scene): void => {
+        hideTooltip();
+        store = new Store();
+        const parts = [plotsSection(scene, styles, store), analysisSection(scene, styles, store), imagesSection(scene, store), planSection(scene), pointsSection(scene, styles, store), machineSection(results, scene)];
+        const unit = h("p", { class: "note" }, [scene.source, scene.triangles ? `${scene.triangles.toLocaleString("en-GB")} triangles` : "", scene.width ? `${scene.width} × ${scene.height}` : "", `${points(scene).length} points`].filter(Boolean).join(" · "));
+        body.replaceChildren(h("div", { class: "scene-head" }, h("h2", { class: "clip", title: scene.name }, scene.name), unit), ...parts);
+        const links = parts.map((part) => h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, part.querySelector("h2")?.textContent ?? ""));
+        nav.replaceChildren(...links);
+    };
+
+    const address = readAddress();
+    const theme = (["auto", "light", "dark"].includes(address.get("theme") ?? "") ? address.get("theme") : "auto") as Theme;
+    setTheme(theme);
+    const themes = segments("Theme", [{ value: "auto", label: "auto" }, { value: "light", label: "light" }, { value: "dark", label: "dark" }], theme, (value) => {
+        setTheme(value as Theme);
+        writeAddress("theme", value);
+        store.tell("theme");
+    });
+    onSystemTheme(() => store.tell("theme"));
+
+    const first = scenes.find((scene) => scene.name === address.get("scene")) ?? scenes[0];
+    const choice = segments("Scene", scenes.map((scene, index) => ({ value: String(index), label: scene.name })), String(first ? scenes.indexOf(first) : 0), (value) => {
+        const scene = scenes[Number(value)];
+        if (!scene) return;
+        writeAddress("scene", scene.name);
+        showScene(scene);
+    });
+    const answers = results.answers ?? [];
+    page.replaceChildren(
+        h("header", {}, h("div", { class: "title" }, h("h1", {}, "Sconce: what accuracy costs in time"), themes.element), h("div", { class: "bar" }, scenes.length > 1 ? choice.element : null, nav)),
+        h(
+            "main",
+            {},
+            answers.length > 0 ? section("answers", "In short", h("ul", { class: "answers" }, ...answers.map((answer) => h("li", {}, answer)))) : null,
+            first ? body : h("p", { class: "note" }, "This run has no scenes."),
+        ),
+    );
+    if (first) showScene(first);
+}
+
+function fail(page: HTMLElement, problem: unknown): void {
+    page.replaceChildren(h("main", {}, h("h1", {}, "This report can't be shown"), h("p", { role: "alert", class: "wrong" }, problem instanceof Error ? problem.message : String(problem))));
+}
+
+const page = document.getElementById("page");
+if (page) {
+    try {
+        build(page, loadResults());
+    } catch (problem) {
+        fail(page, problem);
+        console.error(problem);
+    }
+}

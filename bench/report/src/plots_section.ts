@@ -1,0 +1,49 @@
+// Error against time, reads and memory.
+import { details } from "./details";
+import { h, section, select } from "./dom";
+import { errorFigures, figure, type Figure } from "./figures";
+import { glyph, type MethodStyle } from "./methods";
+import { methodsOf, points, type Scene } from "./results";
+import { scatter } from "./scatter";
+import type { Store } from "./store";
+
+const kCosts = ["frame_ms", "rays.reads_mean", "bytes.total"];
+
+/** The errors that some point has; all when none has any. */
+function measured(scene: Scene, candidates: Figure[]): Figure[] {
+    const found = candidates.filter((of) => points(scene).some((point) => of.of(point) !== null));
+    return found.length > 0 ? found : candidates;
+}
+
+export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, store: Store): HTMLElement {
+    const offered = measured(scene, errorFigures);
+    const first = offered[0] as Figure;
+    const timed = points(scene).some((point) => figure("frame_ms").of(point) !== null);
+    const costs = kCosts.map((key) => (key === "frame_ms" && !timed ? figure("trace_ms") : figure(key)));
+    const plots = costs.map((cost) => scatter(points(scene), cost, first, styles, store));
+
+    const legend = h("div", { class: "legend", role: "group", "aria-label": "Methods shown" });
+    for (const method of methodsOf(scene)) {
+        const button = h("button", { type: "button", "aria-pressed": "true", title: `Show or hide ${method}`, click: () => store.toggle(method) }, glyph(styles.get(method)), h("span", { class: "clip" }, method));
+        store.on(["filter"], () => button.setAttribute("aria-pressed", String(!store.hidden.has(method))));
+        legend.append(button);
+    }
+    const knobs = [...new Set(points(scene).map((point) => point.knob))].filter((knob) => knob && knob !== "default");
+    const errors = select("Error", offered.map((of) => ({ value: of.key, label: of.label })), first.key, (key) => {
+        for (const plot of plots) plot.setError(figure(key));
+    });
+    const knob = select("Knob", [{ value: "", label: "all" }, ...knobs.map((name) => ({ value: name, label: name }))], "", (name) => store.highlight(name));
+    return section(
+        "plots",
+        "What accuracy costs",
+        h(
+            "p",
+            { class: "lead" },
+            "Low and left is better. Thick grey: the Pareto front of all that is shown. Thin lines: each method's own front. Large marks: default settings. Hollow marks: a wrong image. Drag to zoom, double-click for the whole; the wheel zooms with Ctrl or after a click.",
+        ),
+        h("div", { class: "controls" }, errors, knob, legend),
+        h("div", { class: "plots" }, ...plots.map((plot) => plot.element)),
+        details(styles, store),
+    );
+}
+

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "scene/result.h"
+
+namespace sconce
+{
+
+/// Writes folder/report/index.html: one page that needs no other file and no network, with the results and every image file that they name
+/// in it.
+/// @param results  results.json, schema 2 (docs/results.md)    @param folder  where results.json lies; its image files are named relative
+/// to it Errors: badInput names an image file that is no report image or that lies outside the folder; fileError.
+Status writeReportPage(const nlohmann::json& results, const std::filesystem::path& folder);
+
+} // namespace sconce
