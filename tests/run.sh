@@ -5,6 +5,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=${PRESET:-release}
 tools/install_packages.sh
+tools/install_packages.sh tests/packages.txt || echo "Without these the report's page is not tried in a browser: its tests are skipped." >&2
 tools/build.sh "$preset"
 
 # Every Vulkan device that a test makes has the validation layer on; a message fails the test that caused it.

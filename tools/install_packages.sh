@@ -1,14 +1,19 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of packages.txt that are missing, when allowed to; else prints the command and exits 4.
+# Installs the Debian packages that are missing of the given lists, when allowed to; else prints the command and exits 4.
+# tools/install_packages.sh [LIST...] [default: packages.txt]. A line: PACKAGE [COMMAND]; with a command, the package is missing only where
+# the command is: it may have come from elsewhere.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+lists=("$@")
+[[ ${#lists[@]} -eq 0 ]] && lists=(packages.txt)
 missing=()
-while read -r package; do
+while read -r package command; do
     [[ -z $package || $package == \#* ]] && continue
+    [[ -n $command ]] && command -v "$command" > /dev/null && continue
     state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
     [[ $state == installed ]] || missing+=("$package")
-done < packages.txt
+done < <(cat "${lists[@]}")
 [[ ${#missing[@]} -eq 0 ]] && exit 0
 
 echo "Missing packages: ${missing[*]}" >&2

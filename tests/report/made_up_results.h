@@ -11,7 +11,7 @@ namespace sconce::testing_support
 struct MadeUp
 {
     int scenes = 2;
-    int points = 40; // of the first scene; the others have as many
+    int points = 55;             // of the first scene; the others have as many
     int width = 96, height = 54; // of the images
 };
 

@@ -23,7 +23,7 @@ export function details(styles: Map<string, MethodStyle>, store: Store): HTMLEle
             return;
         }
         const group = (name: string): [string, string][] =>
-            figures.filter((of) => of.group === name && of.of(point) !== null).map((of) => [of.label, withUnit(of, of.of(point))]);
+            figures.filter((of) => of.group === name && of.of(point) !== null).map((of) => [of.short, withUnit(of, of.of(point))]);
         const passes = Object.entries(point.passes_ms ?? {}).flatMap(([name, value]): [string, string][] => {
             const time = isNumber(value) ? value : (value as { median?: unknown } | null)?.median;
             return isNumber(time) ? [[name, `${number(time)} ms`]] : [];

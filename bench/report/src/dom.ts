@@ -71,7 +71,7 @@ export function segments(legend: string, choices: Choice[], chosen: string, chan
 }
 
 export function select(label: string, choices: Choice[], chosen: string, changed: (value: string) => void): HTMLElement {
-    const control = h("select", { change: () => changed(control.value) });
+    const control = h("select", { "aria-label": label, change: () => changed(control.value) });
     for (const choice of choices) control.append(h("option", { value: choice.value, title: choice.title }, choice.label));
     control.value = chosen;
     return h("label", { class: "field" }, h("span", {}, label), control);

@@ -94,4 +94,4 @@ export function headOf(of: Figure): string {
 }
 
 /** What a plot's upright axis can show. */
-export const errorFigures = figures.filter((of) => of.group === "error" || ["rays.wrong", "rays.false", "rays.leak", "rays.unresolved"].includes(of.key));
+export const errorFigures = [...errors, ...["rays.wrong", "rays.false", "rays.leak", "rays.unresolved"].map(figure)];

@@ -33,6 +33,11 @@ export function seconds(value: unknown): string {
     return value < 7200 ? `${(value / 60).toFixed(0)} min` : `${(value / 3600).toFixed(1)} h`;
 }
 
+/** `1 point`, `2 points`. */
+export function counted(count: number, what: string): string {
+    return `${count} ${what}${count === 1 ? "" : "s"}`;
+}
+
 /** Anything that a setting can be. */
 export function plain(value: unknown): string {
     if (value === null || value === undefined) return kNone;

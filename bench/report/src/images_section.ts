@@ -77,7 +77,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         h(
             "div",
             { class: "controls" },
-            h("div", { class: "field" }, h("span", {}, "Exposure"), exposure, exposureText, button("0", "Automatic exposure", () => setExposure(0))),
+            h("div", { class: "field" }, h("span", {}, "Exposure"), exposure, exposureText, button("auto", "auto exposure", () => setExposure(0))),
             h("div", { class: "field" }, h("span", {}, "Zoom"), button("−", "Zoom out", () => zoomBy(1 / 1.5)), zoomText, button("+", "Zoom in", () => zoomBy(1.5)), button("whole", "Whole image", () => whole())),
         ),
         h("div", { class: "viewer-body" }, stage, h("div", { class: "beside" }, values, legend, problem, keys)),
@@ -100,6 +100,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     function setAll(value: boolean): void {
         all = value;
         modeChoice.set(all ? "all" : "divider");
+        leftChoice.element.hidden = rightChoice.element.hidden = all;
         layOut();
         void reload();
     }

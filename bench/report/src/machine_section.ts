@@ -4,12 +4,14 @@ import { number, plain, seconds } from "./format";
 import type { Results, Scene } from "./results";
 
 function list(title: string, rows: [string, string][]): HTMLElement {
+    if (rows.length === 0) return h("div", {}, h("h3", {}, title), h("p", { class: "note" }, "not recorded"));
     const entries = h("dl", {});
     for (const [name, value] of rows) entries.append(h("dt", {}, name), h("dd", {}, value));
     return h("div", {}, h("h3", {}, title), entries);
 }
 
-const readable = (key: string): string => key.replaceAll("_", " ");
+const kUnits: [RegExp, string][] = [[/_mb$/, ", MB"], [/_ms$/, ", ms"], [/_s$/, ", s"]];
+const readable = (key: string): string => kUnits.reduce((text, [end, unit]) => text.replace(end, unit), key).replaceAll("_", " ");
 const rowsOf = (object: Record<string, unknown> | undefined): [string, string][] => Object.entries(object ?? {}).map(([key, value]) => [readable(key), plain(value)]);
 
 function command(text: string): HTMLElement {

@@ -1,6 +1,7 @@
 // The page of `sconce bench`: what is the same for every scene at the top, then the parts of the chosen scene.
 import { analysisSection } from "./analysis_section";
 import { h, section, segments } from "./dom";
+import { counted } from "./format";
 import { imagesSection } from "./images_section";
 import { machineSection } from "./machine_section";
 import { methodStyles } from "./methods";
@@ -23,7 +24,7 @@ function build(page: HTMLElement, results: Results): void {
         hideTooltip();
         store = new Store();
         const parts = [plotsSection(scene, styles, store), analysisSection(scene, styles, store), imagesSection(scene, store), planSection(scene), pointsSection(scene, styles, store), machineSection(results, scene)];
-        const unit = h("p", { class: "note" }, [scene.source, scene.triangles ? `${scene.triangles.toLocaleString("en-GB")} triangles` : "", scene.width ? `${scene.width} × ${scene.height}` : "", `${points(scene).length} points`].filter(Boolean).join(" · "));
+        const unit = h("p", { class: "note" }, [scene.source, scene.triangles ? `${scene.triangles.toLocaleString("en-GB")} triangles` : "", scene.width ? `${scene.width} × ${scene.height}` : "", counted(points(scene).length, "point")].filter(Boolean).join(" · "));
         body.replaceChildren(h("div", { class: "scene-head" }, h("h2", { class: "clip", title: scene.name }, scene.name), unit), ...parts);
         const links = parts.map((part) => h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, part.querySelector("h2")?.textContent ?? ""));
         nav.replaceChildren(...links);

@@ -1,7 +1,7 @@
 // Where the probes are and why each is there: seen from above, from the front or from the side.
 import { categorical, css } from "./colour_maps";
 import { h, section, segments, select, svg } from "./dom";
-import { number, percent, seconds } from "./format";
+import { counted, number, percent, seconds } from "./format";
 import { points, type ProbeSet, type Scene } from "./results";
 import { table, type Column } from "./table";
 import { hideTooltip, showTooltip } from "./tooltip";
@@ -39,7 +39,7 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
     const walls = side === "above" ? (scene.plan?.segments ?? []).map(([x0, z0, x1, z1]) => `M${x0} ${z0}L${x1} ${z1}`).join("") : "";
     const drawing = svg(
         "svg",
-        { class: "plan", viewBox: box.join(" "), tabindex: 0, role: "application", "aria-label": `${probes.length} probes seen from ${side === "above" ? "above" : `the ${side}`}. Arrow keys go from probe to probe.` },
+        { class: "plan", viewBox: box.join(" "), tabindex: 0, role: "application", "aria-label": `${counted(probes.length, "probe")} seen from ${side === "above" ? "above" : `the ${side}`}. Arrow keys go from probe to probe.` },
         svg("rect", { class: "bounds", x: low[right], y: top, width: span(right), height: span(down) }),
         svg("path", { class: "walls", d: walls || "M0 0" }),
     );
@@ -136,9 +136,9 @@ export function planSection(scene: Scene): HTMLElement {
                 });
                 const rows = table(`Probes of ${name}`, probeColumns(set), of, (probe) => drawn.mark(of.indexOf(probe)));
                 rows.element.classList.add("short");
-                const list = h("details", {}, h("summary", {}, `List of the ${of.length} probes`), rows.element);
+                const list = h("details", {}, h("summary", {}, `List of ${counted(of.length, "probe")}`), rows.element);
                 const facts = [
-                    `${of.length} probes`,
+                    counted(of.length, "probe"),
                     set.method,
                     set.coverage?.rays !== undefined ? `${percent(set.coverage?.rays)} % of surface rays seen` : "",
                     set.seconds !== undefined ? `placed in ${seconds(set.seconds)}` : "",

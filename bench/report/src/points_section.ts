@@ -1,7 +1,7 @@
 // Every point that was measured, to sort and to filter.
 import { h, section, segments } from "./dom";
 import { figure, figures, headOf, type Figure } from "./figures";
-import { plain } from "./format";
+import { counted, plain } from "./format";
 import { glyph, type MethodStyle } from "./methods";
 import { nameOf, points, type Point, type Scene } from "./results";
 import type { Store } from "./store";
@@ -69,7 +69,7 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
             return store.visible(point) && words.every((word) => text.includes(word));
         });
         grid.setRows(rows);
-        count.textContent = `${rows.length} of ${all.length} points`;
+        count.textContent = `${rows.length} of ${counted(all.length, "point")}`;
         mark();
     };
     const mark = (): void => {

@@ -1,7 +1,7 @@
 // A plot of points, error against a cost, both logarithmic. uPlot does axes and zoom; points, fronts and hovering are drawn here.
 import uPlot from "uplot";
 import { h } from "./dom";
-import { number } from "./format";
+import { counted, number } from "./format";
 import { withUnit, type Figure } from "./figures";
 import type { MethodStyle } from "./methods";
 import { paretoFront, type Placed } from "./pareto";
@@ -43,9 +43,9 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         }
         const unit = (of: Figure): string => (of.unit ? `, ${of.unit}` : "");
         title.textContent = `${error.label}${unit(error)} against ${cost.label}${unit(cost)}`;
-        frame.setAttribute("aria-label", `Plot of ${title.textContent}: ${placed.length} points. Arrow keys go from point to point, Enter picks one, plus and minus zoom, 0 shows all.`);
+        frame.setAttribute("aria-label", `Plot of ${title.textContent}: ${counted(placed.length, "point")}. Arrow keys go from point to point, Enter picks one, plus and minus zoom, 0 shows all.`);
         const left = shown.length - placed.length;
-        note.textContent = left > 0 ? `${left} of ${shown.length} points have no figure above 0 for these axes and are not drawn.` : "";
+        note.textContent = left > 0 ? `Not drawn, as they have no figure above 0 here: ${left} of ${counted(shown.length, "point")}.` : "";
     }
 
     function fit(): void {
