@@ -203,6 +203,13 @@ Json analysisOf(const std::vector<Json>& points)
                          {"theirs", "b0plus/default"},
                          {"ratio", {{"time", nullptr}, {"error", 1.0}, {"memory", 0.98}}},
                          {"sentence", "At equal memory there is no time to compare."}});
+        equal.push_back({{"what", "error"},
+                         {"cost_key", "frame_ms"},
+                         {"method", "path tracer"},
+                         {"ours", nullptr},
+                         {"theirs", "path tracer/default"},
+                         {"ratio", nullptr},
+                         {"sentence", "No setting of ours is as good as the path tracer."}});
     }
     if (has("ours/probes=16"))
         prices.push_back({{"knob", "probes"},

@@ -163,6 +163,10 @@ test("losses are shown like wins", async () => {
     const row = page.locator("#answers-scene tbody tr").first();
     assert.equal(await row.locator(".win").count(), 3);
     assert.equal(await row.locator(".loss").innerText(), "▲1.43×");
+    const rows = page.locator("#answers-scene .scroll").first().locator("tbody tr");
+    assert.equal(await rows.nth(2).locator("td").nth(1).innerText(), "no setting of ours");
+    await page.getByLabel("At equal", { exact: true }).selectOption("memory");
+    assert.equal(await rows.count(), 1);
     noFaults();
 });
 
@@ -339,7 +343,7 @@ test("what is missing is said, not shown as zero", async () => {
     await open("missing");
     const cells = await page.locator("#points tbody tr").nth(1).locator("td").allInnerTexts();
     assert.ok(cells.slice(1).every((text) => text === "–"), cells.join(" "));
-    assert.match(await page.locator(".plot-cell .note").first().innerText(), /^Not drawn, as they have no figure above 0 here: \d+ of 55 points\.$/);
+    assert.match(await page.locator(".plot-cell .note").first().innerText(), /^\d+ of 55 points without a figure here$/);
     await toImages();
     await choose("Layer", "glossy");
     await page.getByText("ours has no image of glossy.").waitFor();

@@ -26,10 +26,11 @@ Json nastyNames(Json results)
     scene["source"] = nasty;
     results["answers"][0] = nasty;
     results["commands"][0] = nasty;
+    const std::string key = nasty.substr(0, 60);
     for (Json& point : scene["points"])
     {
         if (point["method"] == "wang") point["method"] = nasty;
-        point["settings"][nasty.substr(0, 60)] = nasty;
+        point["settings"][key] = nasty;
     }
     scene["analysis"]["breaks"][0]["sentence"] = nasty;
     return results;

@@ -1,7 +1,7 @@
 // Ours beside theirs at equal error, probes, time and memory; what each knob's accuracy costs; where methods break.
-import { h, section } from "./dom";
+import { h, section, select } from "./dom";
 import { figures } from "./figures";
-import { ratio } from "./format";
+import { counted, kNone, ratio } from "./format";
 import { glyph, type MethodStyle } from "./methods";
 import { isNumber, nameOf, points, type Equal, type Point, type Price, type Scene } from "./results";
 import type { Store } from "./store";
@@ -10,7 +10,7 @@ import { table, type Column } from "./table";
 const kEven = 0.03; // a ratio within it of 1 is neither a win nor a loss
 
 /** Ours / theirs, lower is better; the arrow says it without colour. */
-function verdict(value: number | null | undefined): HTMLElement | string {
+function verdict(value: unknown): HTMLElement | string {
     if (!isNumber(value)) return ratio(value);
     const even = Math.abs(value - 1) <= kEven;
     const kind = even ? "even" : value < 1 ? "win" : "loss";
@@ -19,78 +19,108 @@ function verdict(value: number | null | undefined): HTMLElement | string {
     return h("span", { class: kind, title: `${said} than theirs` }, h("span", { "aria-hidden": "true", class: "arrow" }, arrow), ratio(value));
 }
 
-function numberOf(value: unknown): number | null {
-    return isNumber(value) ? value : null;
+const kCostNames: Record<string, string> = { frame_ms: "frame time", trace_ms: "trace time", reads: "reads", bytes: "memory" };
+const kRatios: [string, string][] = [["time", "frame time"], ["trace", "trace time"], ["reads", "reads"], ["error", "error"], ["memory", "memory"], ["wrong_rays", "wrong rays"], ["probes", "probes"]];
+const kPrices: [keyof Price, string, string][] = [
+    ["error_ratio", "error", "error of `to` / error of `from`"],
+    ["time_ratio", "frame time", "frame time of `to` / frame time of `from`"],
+    ["trace_ratio", "trace time", "trace time of `to` / trace time of `from`"],
+    ["reads_ratio", "reads", "reads a ray of `to` / of `from`"],
+    ["memory_ratio", "memory", "memory of `to` / memory of `from`"],
+    ["halving_costs_time", "half the error, time", "the factor on the time when the error is halved by this knob"],
+    ["halving_costs_memory", "half the error, memory", "the factor on the memory when the error is halved by this knob"],
+];
+
+function errorName(row: { error_key?: string | null }): string {
+    const key = row.error_key ?? "";
+    return figures.find((of) => of.key === `error.${key}` || of.key === key || of.key === `rays.${key}`)?.short ?? key;
+}
+
+/** A table with a choice for each property by which its rows can be narrowed down. */
+function filtered<T>(label: string, columns: Column<T>[], rows: T[], properties: [string, (row: T) => string][]): HTMLElement {
+    const grid = table(label, columns, rows);
+    grid.element.classList.add("words");
+    const chosen = properties.map(() => "");
+    const count = h("span", { class: "note", role: "status" });
+    const update = (): void => {
+        const kept = rows.filter((row) => properties.every(([, of], index) => !chosen[index] || of(row) === chosen[index]));
+        grid.setRows(kept);
+        count.textContent = `${kept.length} of ${counted(rows.length, "row")}`;
+    };
+    const controls = properties.flatMap(([name, of], index) => {
+        const values = [...new Set(rows.map(of))].filter(Boolean);
+        if (values.length < 2) return [];
+        return [select(name, [{ value: "", label: "all" }, ...values.map((value) => ({ value, label: value }))], "", (value) => ((chosen[index] = value), update()))];
+    });
+    if (controls.length === 0) return grid.element;
+    update();
+    return h("div", { class: "stack" }, h("div", { class: "controls" }, ...controls, count), grid.element);
 }
 
 export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, store: Store): HTMLElement {
     const byId = new Map(points(scene).map((point) => [point.id, point]));
-    const pointCell = (id: string): Node | string => {
-        const point = byId.get(id);
-        if (!point) return id;
-        const text = `${point.method}, ${nameOf(point)}`;
-        return h(
-            "button",
-            { type: "button", class: "link", title: id, click: () => store.pick(point), mouseenter: () => store.hover(point), mouseleave: () => store.hover(null) },
-            glyph(styles.get(point.method)),
-            h("span", { class: "clip" }, text),
-        );
+    const nameFor = (id: string | null, none: string): string => {
+        const point: Point | undefined = byId.get(id ?? "");
+        return point ? `${point.method}, ${nameOf(point)}` : (id ?? none);
     };
-    const pointText = (id: string): string => {
-        const point: Point | undefined = byId.get(id);
-        return point ? `${point.method}, ${nameOf(point)}` : id;
+    const pointCell = (id: string | null, none = kNone): Node | string => {
+        const point = byId.get(id ?? "");
+        if (!point) return nameFor(id, none);
+        const name = h("span", { class: "clip", title: nameFor(id, none) }, nameFor(id, none));
+        return h("button", { type: "button", class: "link", click: () => store.pick(point), mouseenter: () => store.hover(point), mouseleave: () => store.hover(null) }, glyph(styles.get(point.method)), name);
     };
-    const errorName = (key: string | undefined): string => figures.find((of) => of.key === `error.${key}` || of.key === key)?.label ?? key ?? "";
-
-    const ratioColumn = (head: string, key: string): Column<Equal> => ({
-        head,
-        title: `${head}: ours / theirs; below 1 ours needs or has less`,
-        numeric: true,
-        sortBy: (row) => numberOf(row.ratio?.[key]),
-        show: (row) => verdict(row.ratio?.[key]),
-    });
-    const equalColumns: Column<Equal>[] = [
-        { head: "at equal", sortBy: (row) => row.what, show: (row) => (row.error_key ? `${row.what} (${errorName(row.error_key)})` : row.what) },
-        { head: "ours", sortBy: (row) => pointText(row.ours), show: (row) => pointCell(row.ours) },
-        { head: "theirs", sortBy: (row) => pointText(row.theirs), show: (row) => pointCell(row.theirs) },
-        ratioColumn("time", "time"),
-        ratioColumn("error", "error"),
-        ratioColumn("memory", "memory"),
-        ratioColumn("wrong rays", "wrong_rays"),
-        { head: "in words", sortBy: (row) => row.sentence ?? null, show: (row) => row.sentence ?? "" },
-    ];
-    const priceRatio = (head: string, key: keyof Price, title: string): Column<Price> => ({
+    const pointColumn = <T>(head: string, idOf: (row: T) => string | null, none = kNone): Column<T> => ({ head, sortBy: (row) => nameFor(idOf(row), none), show: (row) => pointCell(idOf(row), none) });
+    const ratioColumn = <T>(head: string, title: string, of: (row: T) => unknown, show: (value: unknown) => Node | string): Column<T> => ({
         head,
         title,
         numeric: true,
-        sortBy: (row) => numberOf(row[key]),
-        show: (row) => ratio(row[key]),
+        sortBy: (row) => (isNumber(of(row)) ? (of(row) as number) : null),
+        show: (row) => show(of(row)),
     });
-    const priceColumns: Column<Price>[] = [
-        { head: "knob", sortBy: (row) => row.knob, show: (row) => row.knob },
-        { head: "from", sortBy: (row) => pointText(row.from), show: (row) => pointCell(row.from) },
-        { head: "to", sortBy: (row) => pointText(row.to), show: (row) => pointCell(row.to) },
-        priceRatio("error", "error_ratio", "error of `to` / error of `from`"),
-        priceRatio("time", "time_ratio", "time of `to` / time of `from`"),
-        priceRatio("memory", "memory_ratio", "memory of `to` / memory of `from`"),
-        priceRatio("halving costs", "halving_costs_time", "the time that halving the error by this knob costs, as a factor"),
-        { head: "in words", sortBy: (row) => row.sentence ?? null, show: (row) => row.sentence ?? "" },
-    ];
+    const present = <T>(rows: T[], columns: Column<T>[]): Column<T>[] => columns.filter((column) => rows.some((row) => column.sortBy(row) !== null));
+    const words = <T extends { sentence?: string }>(): Column<T> => ({ head: "in words", sortBy: (row) => row.sentence ?? null, show: (row) => row.sentence ?? "" });
+
     const equal = scene.analysis?.equal ?? [];
+    const equalColumns = present(equal, [
+        { head: "at equal", sortBy: (row) => row.what, show: (row) => row.what + (row.what === "error" && row.cost_key ? `, least ${kCostNames[row.cost_key] ?? row.cost_key}` : "") },
+        { head: "judged by", title: "the error that is compared", sortBy: (row) => errorName(row) || null, show: errorName },
+        pointColumn("ours", (row) => row.ours, "no setting of ours"),
+        pointColumn("theirs", (row) => row.theirs),
+        ...kRatios.map(([key, head]) => ratioColumn<Equal>(head, `${head}: ours / theirs; below 1 ours takes or has less`, (row) => row.ratio?.[key], verdict)),
+        words<Equal>(),
+    ]);
     const prices = scene.analysis?.prices ?? [];
+    const priceColumns = present(prices, [
+        { head: "knob", sortBy: (row) => row.knob, show: (row) => row.knob },
+        { head: "judged by", title: "the error that is compared", sortBy: (row) => errorName(row) || null, show: errorName },
+        pointColumn("from", (row) => row.from),
+        pointColumn("to", (row) => row.to),
+        ...kPrices.map(([key, head, title]) => ratioColumn<Price>(head, title, (row) => row[key], ratio)),
+        words<Price>(),
+    ]);
     const breaks = scene.analysis?.breaks ?? [];
-    const words = (element: HTMLElement): HTMLElement => (element.classList.add("words"), element);
     const none = (what: string): HTMLElement => h("p", { class: "note" }, `This run has no ${what}.`);
     return section(
         "answers-scene",
         "Ours against theirs",
-        h("p", { class: "lead" }, "Ratios are ours / theirs: ▼ below 1 ours needs less or errs less, ▲ above 1 more."),
-        equal.length > 0 ? words(table("At equal error, probes, time and memory", equalColumns, equal).element) : none("pairs to compare"),
+        h("p", { class: "lead" }, "Ratios are ours / theirs: ▼ below 1 ours takes less or errs less, ▲ above 1 more."),
+        equal.length > 0
+            ? filtered("At equal error, probes, time and memory", equalColumns, equal, [
+                  ["At equal", (row) => row.what],
+                  ["Judged by", errorName],
+                  ["Theirs", (row) => row.method ?? byId.get(row.theirs ?? "")?.method ?? ""],
+              ])
+            : none("pairs to compare"),
         h("h3", {}, "Price list"),
-        prices.length > 0 ? words(table("What each knob costs", priceColumns, prices).element) : none("prices: a knob needs two points"),
+        prices.length > 0
+            ? filtered("What each knob costs", priceColumns, prices, [
+                  ["Knob varied", (row) => row.knob],
+                  ["Prices by", errorName],
+              ])
+            : none("prices: a knob needs two points"),
         h("h3", {}, "Where each method breaks"),
         breaks.length > 0
-            ? h("ul", { class: "breaks" }, ...breaks.map((one) => h("li", {}, glyph(styles.get(one.method)), h("strong", {}, one.method), " ", one.sentence)))
+            ? h("ul", { class: "breaks" }, ...breaks.map((one) => h("li", {}, byId.has(one.id ?? "") ? pointCell(one.id ?? null) : h("strong", {}, glyph(styles.get(one.method)), one.method), h("span", {}, one.sentence))))
             : none("method that broke"),
     );
 }

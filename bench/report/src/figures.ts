@@ -1,5 +1,5 @@
 // Every figure of a point that plots and tables can show: one table, from which axes, columns and tooltips are made.
-import { megabytes, number, percent } from "./format";
+import { megabytes, number, percent, plain } from "./format";
 import { isNumber, type Point } from "./results";
 
 export interface Figure {
@@ -57,6 +57,8 @@ export const figures: Figure[] = [
     time("bake_s", "bake time", "bake", "s"),
     count("rays.reads_mean", "texel reads a ray", "reads a ray", "lower"),
     count("rays.reads_p95", "texel reads a ray, 95th percentile", "reads p95", "lower"),
+    count("rays.reads_max", "texel reads a ray, most", "reads max", "lower"),
+    count("rays.index_reads_mean", "octree reads a ray", "octree reads", "lower"),
     count("rays.handoffs_mean", "hand-offs a ray", "hand-offs"),
     share("rays.wrong", "wrong rays (not within 1 %)", "wrong rays", "lower", wrongRays),
     share("rays.right_1", "right rays, within 1 % of the diagonal", "right 1 %", "higher"),
@@ -66,6 +68,7 @@ export const figures: Figure[] = [
     share("rays.unresolved", "unresolved rays", "unresolved", "lower"),
     count("rays.count", "rays traced", "rays"),
     ...errors,
+    { key: "probes", label: "probes", short: "probes", unit: "", group: "memory", better: "lower", show: plain, axis: 1, of: (point) => path(point, "probes") },
     bytes("bytes.total", "memory", "memory"),
     bytes("bytes.distance", "distance maps", "distance"),
     bytes("bytes.normals", "normal maps", "normals"),
@@ -87,6 +90,11 @@ export function figure(key: string): Figure {
 export function withUnit(of: Figure, value: unknown): string {
     const text = of.show(value);
     return isNumber(value) && of.unit ? `${text} ${of.unit}` : text;
+}
+
+/** Those of the figures that some point has. */
+export function measured(points: Point[], candidates: Figure[]): Figure[] {
+    return candidates.filter((of) => points.some((point) => of.of(point) !== null));
 }
 
 export function headOf(of: Figure): string {

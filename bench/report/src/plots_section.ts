@@ -1,7 +1,7 @@
 // Error against time, reads and memory.
 import { details } from "./details";
 import { h, section, select } from "./dom";
-import { errorFigures, figure, type Figure } from "./figures";
+import { errorFigures, figure, measured, type Figure } from "./figures";
 import { glyph, type MethodStyle } from "./methods";
 import { methodsOf, points, type Scene } from "./results";
 import { scatter } from "./scatter";
@@ -9,16 +9,11 @@ import type { Store } from "./store";
 
 const kCosts = ["frame_ms", "rays.reads_mean", "bytes.total"];
 
-/** The errors that some point has; all when none has any. */
-function measured(scene: Scene, candidates: Figure[]): Figure[] {
-    const found = candidates.filter((of) => points(scene).some((point) => of.of(point) !== null));
-    return found.length > 0 ? found : candidates;
-}
-
 export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, store: Store): HTMLElement {
-    const offered = measured(scene, errorFigures);
+    const found = measured(points(scene), errorFigures);
+    const offered = found.length > 0 ? found : errorFigures;
     const first = offered[0] as Figure;
-    const timed = points(scene).some((point) => figure("frame_ms").of(point) !== null);
+    const timed = measured(points(scene), [figure("frame_ms")]).length > 0;
     const costs = kCosts.map((key) => (key === "frame_ms" && !timed ? figure("trace_ms") : figure(key)));
     const plots = costs.map((cost) => scatter(points(scene), cost, first, styles, store));
 

@@ -1,6 +1,6 @@
 // Every point that was measured, to sort and to filter.
 import { h, section, segments } from "./dom";
-import { figure, figures, headOf, type Figure } from "./figures";
+import { figure, figures, headOf, measured, type Figure } from "./figures";
 import { counted, plain } from "./format";
 import { glyph, type MethodStyle } from "./methods";
 import { nameOf, points, type Point, type Scene } from "./results";
@@ -49,11 +49,8 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
         },
     ];
     const groups: Record<string, () => Column<Point>[]> = {
-        overview: () => kOverview.map((key) => column(figure(key))),
-        time: () => figures.filter((of) => of.group === "time").map(column),
-        rays: () => figures.filter((of) => of.group === "rays").map(column),
-        error: () => figures.filter((of) => of.group === "error").map(column),
-        memory: () => figures.filter((of) => of.group === "memory").map(column),
+        overview: () => measured(all, kOverview.map(figure)).map(column),
+        ...Object.fromEntries(["time", "rays", "error", "memory"].map((group) => [group, () => measured(all, figures.filter((of) => of.group === group)).map(column)])),
         settings: () => settingColumns(all),
     };
     const columnsOf = (group: string): Column<Point>[] => [...first, ...(groups[group]?.() ?? [])];

@@ -24,6 +24,8 @@ export interface Point {
     place_s?: number | null;
     bake_peak_mb?: number | null;
     wrong?: string | null;
+    clock?: string; // whose time it is: "device" or "cpu"
+    probes?: number | null;
     images?: Record<string, string> | null;
 }
 
@@ -36,21 +38,27 @@ export interface ProbeSet {
 
 export interface Equal {
     what: string;
-    error_key?: string;
-    ours: string;
-    theirs: string;
-    ratio?: Record<string, number | null>;
+    error_key?: string | null;
+    cost_key?: string | null; // what the cheapest of equal error was chosen by
+    method?: string; // theirs
+    ours: string | null; // null: no setting of ours is good or cheap enough
+    theirs: string | null;
+    ratio?: Record<string, number | null> | null;
     sentence?: string;
 }
 
 export interface Price {
     knob: string;
+    error_key?: string | null;
     from: string;
     to: string;
     error_ratio?: number | null;
     time_ratio?: number | null;
+    trace_ratio?: number | null;
+    reads_ratio?: number | null;
     memory_ratio?: number | null;
     halving_costs_time?: number | null;
+    halving_costs_memory?: number | null;
     sentence?: string;
 }
 
@@ -66,7 +74,7 @@ export interface Scene {
     plan?: { segments?: [number, number, number, number][] } | null;
     probe_sets?: Record<string, ProbeSet>;
     points?: Point[];
-    analysis?: { equal?: Equal[]; prices?: Price[]; breaks?: { method: string; sentence: string }[] } | null;
+    analysis?: { equal?: Equal[]; prices?: Price[]; breaks?: { method: string; id?: string; sentence: string }[] } | null;
 }
 
 export interface Results {

@@ -45,7 +45,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         title.textContent = `${error.label}${unit(error)} against ${cost.label}${unit(cost)}`;
         frame.setAttribute("aria-label", `Plot of ${title.textContent}: ${counted(placed.length, "point")}. Arrow keys go from point to point, Enter picks one, plus and minus zoom, 0 shows all.`);
         const left = shown.length - placed.length;
-        note.textContent = left > 0 ? `Not drawn, as they have no figure above 0 here: ${left} of ${counted(shown.length, "point")}.` : "";
+        note.textContent = left > 0 ? `${left} of ${counted(shown.length, "point")} without a figure here` : "";
     }
 
     function fit(): void {
@@ -275,7 +275,8 @@ function spreadOf(point: Point, of: Figure): string {
 /** What a hovered point says: its method, the setting that it varies, its figures, all of its settings. */
 export function tooltipOf(point: Point, ...shown: Figure[]): Node[] {
     const list = h("dl", {});
-    for (const of of shown) list.append(h("dt", {}, of.label), h("dd", {}, withUnit(of, of.of(point)) + spreadOf(point, of)));
+    const clock = (of: Figure): string => (of.unit === "ms" && point.clock === "cpu" ? " on the CPU" : "");
+    for (const of of shown) list.append(h("dt", {}, of.label + clock(of)), h("dd", {}, withUnit(of, of.of(point)) + spreadOf(point, of)));
     const settings = Object.entries(point.settings ?? {})
         .map(([name, value]) => `${name} ${String(value)}`)
         .join(" · ");
