@@ -63,8 +63,12 @@ async function expectImages(left, right) {
 }
 const values = () => page.locator(".values").innerText();
 
+/** Waits for the frame that draws what was changed. */
+const drawn = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
 /** The colour that a pane shows, at shares of its width and height. */
 async function shown(x, y) {
+    await drawn();
     return pane().evaluate((canvas, [u, v]) => window.colourAt(canvas, u, v), [x, y]);
 }
 async function toImages() {
@@ -107,17 +111,17 @@ test("plots are walked through and zoomed by keys, and dragged", async () => {
     await page.keyboard.press("Escape");
     const whole = await picture();
     await page.keyboard.press("+");
-    await page.waitForTimeout(50);
+    await drawn();
     assert.notEqual(await picture(), whole);
     await page.keyboard.press("0");
-    await page.waitForTimeout(50);
+    await drawn();
     assert.equal(await picture(), whole);
     const box = await plot.boundingBox();
     await page.mouse.move(box.x + 100, box.y + 60);
     await page.mouse.down();
     await page.mouse.move(box.x + 200, box.y + 160, { steps: 4 });
     await page.mouse.up();
-    await page.waitForTimeout(50);
+    await drawn();
     assert.notEqual(await picture(), whole);
     noFaults();
 });
@@ -252,6 +256,7 @@ test("pixel values are the file's, whatever the exposure; zoom and crosshair are
     await page.keyboard.press("+");
     await page.keyboard.press("+");
     assert.ok(parseInt(await zoom.innerText(), 10) > least);
+    await drawn();
     const same = await page.locator("canvas.pane").evaluateAll((all) => all.slice(0, 2).map((canvas) => canvas.toDataURL()));
     assert.equal(same[0], same[1], "equal images at one place look alike");
     noFaults();
@@ -273,14 +278,14 @@ test("the exposure and the tone curve are those of the command's PNG files", asy
 
 test("probes say where they are and why", async () => {
     await open("typical");
-    await page.locator("svg.plan").first().focus();
+    await page.locator("svg.plan:not(.ground)").first().focus();
     await page.keyboard.press("ArrowRight");
     assert.match(await tooltip(), /probe 0 at .*\nskeleton ridge, covers 1.2 % of the surface first/);
-    const dot = await page.locator("svg.plan").nth(1).locator("circle[data-probe='4']").boundingBox();
+    const dot = await page.locator("svg.plan:not(.ground)").nth(1).locator("circle[data-probe='4']").boundingBox();
     await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
     assert.match(await tooltip(), /grid point 4,2,0[^]*grid point 4,1,0|grid point 4,0,0[^]*grid point 4,1,0/); // all three that stand over each other
     await choose("Seen from", "the front");
-    assert.equal(await page.locator("svg.plan").first().locator("circle").count(), 54);
+    assert.equal(await page.locator("svg.plan:not(.ground)").first().locator("circle").count(), 54);
     noFaults();
 });
 
@@ -293,7 +298,7 @@ test("the theme follows the system until it is chosen, and the choice stays in t
     await choose("Theme", "light");
     const light = await background();
     assert.notEqual(light, dark);
-    await page.waitForTimeout(50);
+    await drawn();
     assert.notEqual(await axis(), darkPlot, "plots change with it");
     await page.reload();
     assert.equal(await background(), light);

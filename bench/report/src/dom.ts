@@ -26,6 +26,19 @@ export function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: At
     return element;
 }
 
+/** A function that does the work at the next frame, once, however often it is called before. */
+export function perFrame(work: () => void): () => void {
+    let asked = false;
+    return () => {
+        if (asked) return;
+        asked = true;
+        requestAnimationFrame(() => {
+            asked = false;
+            work();
+        });
+    };
+}
+
 let counter = 0;
 /** An id that no other element has. */
 export function freshId(prefix: string): string {

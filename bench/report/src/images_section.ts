@@ -1,6 +1,6 @@
 // Ours, the baseline, the reference and their errors: beside each other with a divider, or all at once, at one place and exposure.
 import { categorical, css, gradient, kNoProbe } from "./colour_maps";
-import { h, section, segments, type Segments } from "./dom";
+import { h, perFrame, section, segments, type Segments } from "./dom";
 import { number } from "./format";
 import { autoExposure, entriesOf, kLayers, load, paint, pixelText, toneTable, topOf, type Entry, type Layer, type Loaded } from "./image_layers";
 import { imagePane, type Pane, type View } from "./image_pane";
@@ -161,9 +161,12 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         drawLegend(how.top, images);
         redraw();
     }
-    function redraw(): void {
+    const drawPanes = perFrame(() => {
         if (all) panes.forEach((pane, index) => pane.draw(shown[index]?.canvas ?? null, null, 1, view, cursor));
         else panes[0]?.draw(shown[0]?.canvas ?? null, shown[1]?.canvas ?? null, split, view, cursor);
+    });
+    function redraw(): void {
+        drawPanes();
         handle.style.left = `${100 * split}%`;
         handle.setAttribute("aria-valuenow", String(Math.round(100 * split)));
         handle.setAttribute("aria-valuetext", `${Math.round(100 * split)} % ${entries[left]?.label ?? ""}`);

@@ -17,7 +17,7 @@ function reasonOf(probe: Probe): string {
     return (probe.why ?? "").split(",")[0]?.replace(/[\s\d.:;-]+$/, "").trim() || "no reason given";
 }
 
-function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen: (probe: number) => void): { element: SVGSVGElement; mark(probe: number): void } {
+function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen: (probe: number) => void): { element: HTMLElement; mark(probe: number): void } {
     const [right, down, toward] = kAxes[side];
     const probes = set.probes ?? [];
     const low = [...(scene.bounds?.min ?? [Infinity, Infinity, Infinity])];
@@ -40,6 +40,11 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
     const drawing = svg(
         "svg",
         { class: "plan", viewBox: box.join(" "), tabindex: 0, role: "application", "aria-label": `${counted(probes.length, "probe")} seen from ${side === "above" ? "above" : `the ${side}`}. Arrow keys go from probe to probe.` },
+    );
+    // Under the probes in a drawing of its own: thousands of lines are not drawn again for every probe that lights up.
+    const ground = svg(
+        "svg",
+        { class: "plan ground", viewBox: box.join(" "), "aria-hidden": "true" },
         svg("rect", { class: "bounds", x: low[right], y: top, width: span(right), height: span(down) }),
         svg("path", { class: "walls", d: walls || "M0 0" }),
     );
@@ -97,7 +102,7 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
         event.preventDefault();
         explain([(current + step + probes.length) % probes.length]);
     });
-    return { element: drawing, mark };
+    return { element: h("div", { class: "plan-stack" }, ground, drawing), mark };
 }
 
 export function planSection(scene: Scene): HTMLElement {

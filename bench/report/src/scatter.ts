@@ -1,6 +1,6 @@
 // A plot of points, error against a cost, both logarithmic. uPlot does axes and zoom; points, fronts and hovering are drawn here.
 import uPlot from "uplot";
-import { h } from "./dom";
+import { h, perFrame } from "./dom";
 import { counted, number } from "./format";
 import { withUnit, type Figure } from "./figures";
 import type { MethodStyle } from "./methods";
@@ -111,6 +111,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         ctx.beginPath();
         ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
         ctx.clip();
+        const colours = new Map([...styles].map(([method, style]) => [method, colourOf(style.colour)]));
         const usable = placed.filter((p) => !p.item.wrong && store.stands(p.item));
 
         ctx.lineJoin = "round";
@@ -128,8 +129,8 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         });
         ctx.stroke();
 
-        for (const [method, style] of styles) {
-            ctx.strokeStyle = colourOf(style.colour); // each method's own front
+        for (const [method, colour] of colours) {
+            ctx.strokeStyle = colour; // each method's own front
             ctx.lineWidth = 1.25 * scale;
             ctx.beginPath();
             paretoFront(usable.filter((p) => p.item.method === method)).forEach((p, index) => (index ? ctx.lineTo(...at(p)) : ctx.moveTo(...at(p))));
@@ -150,7 +151,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
                 ctx.scale(size, size);
                 ctx.lineWidth = (lit ? 2 : 1) * (scale / size);
                 ctx.globalAlpha = stands || lit ? 1 : 0.2;
-                const colour = colourOf(styles.get(p.item.method)?.colour ?? "--ink");
+                const colour = colours.get(p.item.method) ?? ink;
                 ctx.fillStyle = p.item.wrong ? paper : colour;
                 ctx.strokeStyle = lit ? ink : p.item.wrong ? colour : paper;
                 const shape = shapes.get(p.item.method);
@@ -242,7 +243,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         hideTooltip();
     });
 
-    store.on(["hover", "pick", "theme"], () => plot?.redraw(false, true));
+    store.on(["hover", "pick", "theme"], perFrame(() => plot?.redraw(false, true)));
     store.on(["filter"], () => {
         place();
         plot?.redraw(false, true);
