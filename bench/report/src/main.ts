@@ -23,10 +23,17 @@ function build(page: HTMLElement, results: Results): void {
     const showScene = (scene: Scene): void => {
         hideTooltip();
         store = new Store();
-        const parts = [plotsSection(scene, styles, store), analysisSection(scene, styles, store), imagesSection(scene, store), planSection(scene), pointsSection(scene, styles, store), machineSection(results, scene)];
+        const parts: [string, HTMLElement][] = [
+            ["Costs", plotsSection(scene, styles, store)],
+            ["Comparison", analysisSection(scene, styles, store)],
+            ["Images", imagesSection(scene, store)],
+            ["Probes", planSection(scene)],
+            ["Points", pointsSection(scene, styles, store)],
+            ["Machine", machineSection(results, scene)],
+        ];
         const unit = h("p", { class: "note" }, [scene.source, scene.triangles ? `${scene.triangles.toLocaleString("en-GB")} triangles` : "", scene.width ? `${scene.width} × ${scene.height}` : "", counted(points(scene).length, "point")].filter(Boolean).join(" · "));
-        body.replaceChildren(h("div", { class: "scene-head" }, h("h2", { class: "clip", title: scene.name }, scene.name), unit), ...parts);
-        const links = parts.map((part) => h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, part.querySelector("h2")?.textContent ?? ""));
+        body.replaceChildren(h("div", { class: "scene-head" }, h("h2", { class: "clip", title: scene.name }, scene.name), unit), ...parts.map(([, part]) => part));
+        const links = parts.map(([name, part]) => h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, name));
         nav.replaceChildren(...links);
     };
 
@@ -48,8 +55,10 @@ function build(page: HTMLElement, results: Results): void {
         showScene(scene);
     });
     const answers = results.answers ?? [];
+    const header = h("header", {}, h("div", { class: "title" }, h("h1", {}, "Sconce: what accuracy costs in time"), nav, themes.element), scenes.length > 1 ? choice.element : null);
+    new ResizeObserver(() => document.documentElement.style.setProperty("--header", `${header.offsetHeight}px`)).observe(header);
     page.replaceChildren(
-        h("header", {}, h("div", { class: "title" }, h("h1", {}, "Sconce: what accuracy costs in time"), themes.element), h("div", { class: "bar" }, scenes.length > 1 ? choice.element : null, nav)),
+        header,
         h(
             "main",
             {},
