@@ -21,7 +21,11 @@ afterEach(async () => {
 });
 
 async function open(name, colorScheme = "light") {
-    const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme, permissions: ["clipboard-read", "clipboard-write"] });
+    const context = await browser.newContext({
+        viewport: { width: 1280, height: 720 },
+        colorScheme,
+        permissions: ["clipboard-read", "clipboard-write"],
+    });
     page = await context.newPage();
     page.setDefaultTimeout(5000);
     faults = [];
@@ -54,7 +58,11 @@ async function findPoint(plot) {
     assert.fail("no point under the mouse");
 }
 const tooltip = () => page.locator("#tooltip").innerText();
-const choose = (legend, label) => page.getByRole("group", { name: legend, exact: true }).locator("label", { hasText: new RegExp(`^\\d?${label}$`) }).click();
+const choose = (legend, label) =>
+    page
+        .getByRole("group", { name: legend, exact: true })
+        .locator("label", { hasText: new RegExp(`^\\d?${label}$`) })
+        .click();
 const pane = () => page.locator("canvas.pane").first();
 /** Waits until these images are left and right of the divider: they are unpacked meanwhile. */
 async function expectImages(left, right) {
@@ -138,14 +146,18 @@ test("methods are hidden and other errors chosen", async () => {
 
 test("tables sort, with what was not measured last, and filter", async () => {
     await open("typical");
-    const column = (index) => page.locator("#points tbody tr").evaluateAll((rows, at) => rows.map((row) => row.children[at].innerText.trim()), index);
+    const column = (index) =>
+        page.locator("#points tbody tr").evaluateAll((rows, at) => rows.map((row) => row.children[at].innerText.trim()), index);
     const head = page.locator("#points thead th", { hasText: "reads a ray" });
     await head.locator("button").focus();
     await page.keyboard.press("Enter");
     assert.equal(await head.getAttribute("aria-sort"), "ascending");
     const rising = await column(4);
     const numbers = rising.filter((text) => text !== "–").map(Number);
-    assert.deepEqual(numbers, [...numbers].sort((a, b) => a - b));
+    assert.deepEqual(
+        numbers,
+        [...numbers].sort((a, b) => a - b),
+    );
     assert.equal(rising.filter((text) => text === "–").length, 11);
     assert.ok(rising.slice(-11).every((text) => text === "–"));
     await page.keyboard.press("Enter"); // the head keeps the focus
@@ -291,7 +303,11 @@ test("probes say where they are and why", async () => {
 
 test("the theme follows the system until it is chosen, and the choice stays in the address", async () => {
     const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
-    const axis = () => page.locator(".plot canvas").first().evaluate((canvas) => canvas.toDataURL());
+    const axis = () =>
+        page
+            .locator(".plot canvas")
+            .first()
+            .evaluate((canvas) => canvas.toDataURL());
     await open("typical", "dark");
     const dark = await background();
     const darkPlot = await axis();
@@ -347,7 +363,10 @@ for (const name of ["one", "many", "names", "missing", "empty"])
 test("what is missing is said, not shown as zero", async () => {
     await open("missing");
     const cells = await page.locator("#points tbody tr").nth(1).locator("td").allInnerTexts();
-    assert.ok(cells.slice(1).every((text) => text === "–"), cells.join(" "));
+    assert.ok(
+        cells.slice(1).every((text) => text === "–"),
+        cells.join(" "),
+    );
     assert.match(await page.locator(".plot-cell .note").first().innerText(), /^\d+ of 55 points without a figure here$/);
     await toImages();
     await choose("Layer", "glossy");
@@ -371,7 +390,10 @@ test("no serious fault of accessibility, light and dark", async () => {
         const rules = theme === "light" ? {} : { runOnly: ["color-contrast"] }; // the rest doesn't depend on the theme
         const { violations } = await page.evaluate((options) => window.axe.run({ resultTypes: ["violations"], ...options }), rules);
         const serious = violations.filter((one) => ["serious", "critical"].includes(one.impact));
-        assert.deepEqual(serious.map((one) => `${theme}: ${one.id}: ${one.nodes.map((node) => `${node.target} ${node.failureSummary}`).join("; ")}`), []);
+        assert.deepEqual(
+            serious.map((one) => `${theme}: ${one.id}: ${one.nodes.map((node) => `${node.target} ${node.failureSummary}`).join("; ")}`),
+            [],
+        );
         await page.context().close();
         page = undefined;
     }

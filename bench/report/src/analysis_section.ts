@@ -16,11 +16,24 @@ function verdict(value: unknown): HTMLElement | string {
     const kind = even ? "even" : value < 1 ? "win" : "loss";
     const arrow = { even: "=", win: "▼", loss: "▲" }[kind];
     const said = { even: "as much", win: "less", loss: "more" }[kind];
-    return h("span", { class: kind, title: `${said} than theirs` }, h("span", { "aria-hidden": "true", class: "arrow" }, arrow), ratio(value));
+    return h(
+        "span",
+        { class: kind, title: `${said} than theirs` },
+        h("span", { "aria-hidden": "true", class: "arrow" }, arrow),
+        ratio(value),
+    );
 }
 
 const kCostNames: Record<string, string> = { frame_ms: "frame time", trace_ms: "trace time", reads: "reads", bytes: "memory" };
-const kRatios: [string, string][] = [["time", "frame time"], ["trace", "trace time"], ["reads", "reads"], ["error", "error"], ["memory", "memory"], ["wrong_rays", "wrong rays"], ["probes", "probes"]];
+const kRatios: [string, string][] = [
+    ["time", "frame time"],
+    ["trace", "trace time"],
+    ["reads", "reads"],
+    ["error", "error"],
+    ["memory", "memory"],
+    ["wrong_rays", "wrong rays"],
+    ["probes", "probes"],
+];
 const kPrices: [keyof Price, string, string][] = [
     ["error_ratio", "error", "error of `to` / error of `from`"],
     ["time_ratio", "frame time", "frame time of `to` / frame time of `from`"],
@@ -50,7 +63,14 @@ function filtered<T>(label: string, columns: Column<T>[], rows: T[], properties:
     const controls = properties.flatMap(([name, of], index) => {
         const values = [...new Set(rows.map(of))].filter(Boolean);
         if (values.length < 2) return [];
-        return [select(name, [{ value: "", label: "all" }, ...values.map((value) => ({ value, label: value }))], "", (value) => ((chosen[index] = value), update()))];
+        return [
+            select(
+                name,
+                [{ value: "", label: "all" }, ...values.map((value) => ({ value, label: value }))],
+                "",
+                (value) => ((chosen[index] = value), update()),
+            ),
+        ];
     });
     if (controls.length === 0) return grid.element;
     update();
@@ -67,9 +87,24 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
         const point = byId.get(id ?? "");
         if (!point) return nameFor(id, none);
         const name = h("span", { class: "clip", title: nameFor(id, none) }, nameFor(id, none));
-        return h("button", { type: "button", class: "link", click: () => store.pick(point), mouseenter: () => store.hover(point), mouseleave: () => store.hover(null) }, glyph(styles.get(point.method)), name);
+        return h(
+            "button",
+            {
+                type: "button",
+                class: "link",
+                click: () => store.pick(point),
+                mouseenter: () => store.hover(point),
+                mouseleave: () => store.hover(null),
+            },
+            glyph(styles.get(point.method)),
+            name,
+        );
     };
-    const pointColumn = <T>(head: string, idOf: (row: T) => string | null, none = kNone): Column<T> => ({ head, sortBy: (row) => nameFor(idOf(row), none), show: (row) => pointCell(idOf(row), none) });
+    const pointColumn = <T>(head: string, idOf: (row: T) => string | null, none = kNone): Column<T> => ({
+        head,
+        sortBy: (row) => nameFor(idOf(row), none),
+        show: (row) => pointCell(idOf(row), none),
+    });
     const ratioColumn = <T>(head: string, title: string, of: (row: T) => unknown, show: (value: unknown) => Node | string): Column<T> => ({
         head,
         title,
@@ -77,16 +112,27 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
         sortBy: (row) => (isNumber(of(row)) ? (of(row) as number) : null),
         show: (row) => show(of(row)),
     });
-    const present = <T>(rows: T[], columns: Column<T>[]): Column<T>[] => columns.filter((column) => rows.some((row) => column.sortBy(row) !== null));
-    const words = <T extends { sentence?: string }>(): Column<T> => ({ head: "in words", sortBy: (row) => row.sentence ?? null, show: (row) => row.sentence ?? "" });
+    const present = <T>(rows: T[], columns: Column<T>[]): Column<T>[] =>
+        columns.filter((column) => rows.some((row) => column.sortBy(row) !== null));
+    const words = <T extends { sentence?: string }>(): Column<T> => ({
+        head: "in words",
+        sortBy: (row) => row.sentence ?? null,
+        show: (row) => row.sentence ?? "",
+    });
 
     const equal = scene.analysis?.equal ?? [];
     const equalColumns = present(equal, [
-        { head: "at equal", sortBy: (row) => row.what, show: (row) => row.what + (row.what === "error" && row.cost_key ? `, least ${kCostNames[row.cost_key] ?? row.cost_key}` : "") },
+        {
+            head: "at equal",
+            sortBy: (row) => row.what,
+            show: (row) => row.what + (row.what === "error" && row.cost_key ? `, least ${kCostNames[row.cost_key] ?? row.cost_key}` : ""),
+        },
         { head: "judged by", title: "the error that is compared", sortBy: (row) => errorName(row) || null, show: errorName },
         pointColumn("ours", (row) => row.ours, "no setting of ours"),
         pointColumn("theirs", (row) => row.theirs),
-        ...kRatios.map(([key, head]) => ratioColumn<Equal>(head, `${head}: ours / theirs; below 1 ours takes or has less`, (row) => row.ratio?.[key], verdict)),
+        ...kRatios.map(([key, head]) =>
+            ratioColumn<Equal>(head, `${head}: ours / theirs; below 1 ours takes or has less`, (row) => row.ratio?.[key], verdict),
+        ),
         words<Equal>(),
     ]);
     const prices = scene.analysis?.prices ?? [];
@@ -120,7 +166,18 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
             : none("prices: a knob needs two points"),
         h("h3", {}, "Where each method breaks"),
         breaks.length > 0
-            ? h("ul", { class: "breaks" }, ...breaks.map((one) => h("li", {}, byId.has(one.id ?? "") ? pointCell(one.id ?? null) : h("strong", {}, glyph(styles.get(one.method)), one.method), h("span", {}, one.sentence))))
+            ? h(
+                  "ul",
+                  { class: "breaks" },
+                  ...breaks.map((one) =>
+                      h(
+                          "li",
+                          {},
+                          byId.has(one.id ?? "") ? pointCell(one.id ?? null) : h("strong", {}, glyph(styles.get(one.method)), one.method),
+                          h("span", {}, one.sentence),
+                      ),
+                  ),
+              )
             : none("method that broke"),
     );
 }

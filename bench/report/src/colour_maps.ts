@@ -3,7 +3,16 @@
 export type Colour = [number, number, number]; // 0..255
 
 /** Black over purple and orange to pale yellow: lighter is more, in grey, too. */
-const kStops: Colour[] = [[4, 4, 16], [46, 17, 96], [112, 31, 129], [178, 50, 121], [235, 87, 96], [253, 149, 104], [254, 207, 146], [252, 253, 200]];
+const kStops: Colour[] = [
+    [4, 4, 16],
+    [46, 17, 96],
+    [112, 31, 129],
+    [178, 50, 121],
+    [235, 87, 96],
+    [253, 149, 104],
+    [254, 207, 146],
+    [252, 253, 200],
+];
 
 /** Share in [0,1]; what is beyond takes the end's colour. */
 export function sequential(share: number): Colour {

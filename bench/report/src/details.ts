@@ -37,16 +37,23 @@ export function details(styles: Map<string, MethodStyle>, store: Store): HTMLEle
                 h("h3", {}, `${point.method}, ${nameOf(point)}`),
                 h("code", { class: "clip", title: point.id }, point.id),
                 point.clock === "cpu" ? h("span", { class: "note" }, "times of the CPU") : null,
-                Object.keys(imagesOf(point)).length > 0 ? h("button", { type: "button", click: () => store.show(point) }, "Show its images") : h("span", { class: "note" }, "no images kept"),
+                Object.keys(imagesOf(point)).length > 0
+                    ? h("button", { type: "button", click: () => store.show(point) }, "Show its images")
+                    : h("span", { class: "note" }, "no images kept"),
                 h("button", { type: "button", class: "quiet", click: () => store.pick(null) }, "Close"),
             ),
             point.wrong ? h("p", { class: "wrong" }, `Wrong: ${point.wrong}`) : "",
             h(
                 "div",
                 { class: "details-body" },
-                ...[block("Settings", settings), block("Time", group("time")), block("Passes", passes), block("Rays", group("rays")), block("Error", group("error")), block("Memory", group("memory"))].filter(
-                    (part): part is HTMLElement => part !== null,
-                ),
+                ...[
+                    block("Settings", settings),
+                    block("Time", group("time")),
+                    block("Passes", passes),
+                    block("Rays", group("rays")),
+                    block("Error", group("error")),
+                    block("Memory", group("memory")),
+                ].filter((part): part is HTMLElement => part !== null),
             ),
         );
     };

@@ -9,18 +9,27 @@ function fill(element: Element, attributes: Attributes, children: Child[]): void
         else if (value === true) element.setAttribute(name, "");
         else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, String(value));
     }
-    for (const child of children) if (child !== null && child !== undefined && child !== false) element.append(typeof child === "number" ? String(child) : child);
+    for (const child of children)
+        if (child !== null && child !== undefined && child !== false) element.append(typeof child === "number" ? String(child) : child);
 }
 
 /** An HTML element. An attribute that is a function listens to the event of its name. */
-export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+export function h<K extends keyof HTMLElementTagNameMap>(
+    tag: K,
+    attributes: Attributes = {},
+    ...children: Child[]
+): HTMLElementTagNameMap[K] {
     const element = document.createElement(tag);
     fill(element, attributes, children);
     return element;
 }
 
 /** An SVG element. */
-export function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[K] {
+export function svg<K extends keyof SVGElementTagNameMap>(
+    tag: K,
+    attributes: Attributes = {},
+    ...children: Child[]
+): SVGElementTagNameMap[K] {
     const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
     fill(element, attributes, children);
     return element;
@@ -69,11 +78,19 @@ export function segments(legend: string, choices: Choice[], chosen: string, chan
     const inputs = new Map<string, HTMLInputElement>();
     const element = h("fieldset", { class: "segments" }, h("legend", {}, legend));
     for (const choice of choices) {
-        const input = h("input", { type: "radio", name, value: choice.value, disabled: choice.disabled === true, change: () => changed(choice.value) });
+        const input = h("input", {
+            type: "radio",
+            name,
+            value: choice.value,
+            disabled: choice.disabled === true,
+            change: () => changed(choice.value),
+        });
         input.checked = choice.value === chosen;
         inputs.set(choice.value, input);
         const key = choice.key ? h("kbd", {}, choice.key) : null;
-        element.append(h("label", { title: choice.title ?? choice.label }, input, h("span", {}, key, h("span", { class: "clip" }, choice.label))));
+        element.append(
+            h("label", { title: choice.title ?? choice.label }, input, h("span", {}, key, h("span", { class: "clip" }, choice.label))),
+        );
     }
     return {
         element,

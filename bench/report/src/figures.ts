@@ -16,7 +16,8 @@ export interface Figure {
 
 function path(point: Point, key: string): number | null {
     let value: unknown = point;
-    for (const part of key.split(".")) value = typeof value === "object" && value !== null ? (value as Record<string, unknown>)[part] : undefined;
+    for (const part of key.split("."))
+        value = typeof value === "object" && value !== null ? (value as Record<string, unknown>)[part] : undefined;
     if (typeof value === "object" && value !== null) value = (value as Record<string, unknown>).median;
     return isNumber(value) ? value : null;
 }
@@ -33,14 +34,38 @@ function count(key: string, label: string, short: string, better?: Figure["bette
     return { key, label, short, unit: "", group: "rays", better, show: number, axis: 1, of: (point) => path(point, key) };
 }
 function bytes(key: string, label: string, short: string): Figure {
-    return { key, label, short, unit: "MB", group: "memory", better: "lower", show: megabytes, axis: 1e-6, of: (point) => path(point, key) };
+    return {
+        key,
+        label,
+        short,
+        unit: "MB",
+        group: "memory",
+        better: "lower",
+        show: megabytes,
+        axis: 1e-6,
+        of: (point) => path(point, key),
+    };
 }
 
-const kMetrics: [string, string][] = [["relmse", "relMSE"], ["mse", "MSE"], ["flip", "FLIP"]];
+const kMetrics: [string, string][] = [
+    ["relmse", "relMSE"],
+    ["mse", "MSE"],
+    ["flip", "FLIP"],
+];
 const errors: Figure[] = ["glossy", "diffuse", "beauty"].flatMap((layer) =>
     kMetrics.map(([metric, name]): Figure => {
         const key = `error.${layer}.${metric}`;
-        return { key, label: `${name} of ${layer}`, short: `${layer} ${name}`, unit: "", group: "error", better: "lower", show: number, axis: 1, of: (point) => path(point, key) };
+        return {
+            key,
+            label: `${name} of ${layer}`,
+            short: `${layer} ${name}`,
+            unit: "",
+            group: "error",
+            better: "lower",
+            show: number,
+            axis: 1,
+            of: (point) => path(point, key),
+        };
     }),
 );
 
@@ -68,14 +93,34 @@ export const figures: Figure[] = [
     share("rays.unresolved", "unresolved rays", "unresolved", "lower"),
     count("rays.count", "rays traced", "rays"),
     ...errors,
-    { key: "probes", label: "probes", short: "probes", unit: "", group: "memory", better: "lower", show: plain, axis: 1, of: (point) => path(point, "probes") },
+    {
+        key: "probes",
+        label: "probes",
+        short: "probes",
+        unit: "",
+        group: "memory",
+        better: "lower",
+        show: plain,
+        axis: 1,
+        of: (point) => path(point, "probes"),
+    },
     bytes("bytes.total", "memory", "memory"),
     bytes("bytes.distance", "distance maps", "distance"),
     bytes("bytes.normals", "normal maps", "normals"),
     bytes("bytes.radiance", "radiance maps", "radiance"),
     bytes("bytes.irradiance", "irradiance maps", "irradiance"),
     bytes("bytes.index", "octree", "index"),
-    { key: "bake_peak_mb", label: "peak host memory of the bake", short: "bake peak", unit: "MB", group: "memory", better: "lower", show: number, axis: 1, of: (point) => path(point, "bake_peak_mb") },
+    {
+        key: "bake_peak_mb",
+        label: "peak host memory of the bake",
+        short: "bake peak",
+        unit: "MB",
+        group: "memory",
+        better: "lower",
+        show: number,
+        axis: 1,
+        of: (point) => path(point, "bake_peak_mb"),
+    },
 ];
 
 const byKey = new Map(figures.map((figure) => [figure.key, figure]));

@@ -52,7 +52,8 @@ export async function load(entry: Entry, layer: Layer, truth: Entry | undefined)
     const missing = (problem: string): Loaded => ({ entry, image: null, reference: null, problem });
     const file = entry.images[layer.key];
     if (entry.error && !layer.colours) return missing(`There is no error of ${layer.label}: the reference traces no probes.`);
-    if (!file) return missing(entry.point ? `${entry.label} has no image of ${layer.label}.` : `The reference has no image of ${layer.label}.`);
+    if (!file)
+        return missing(entry.point ? `${entry.label} has no image of ${layer.label}.` : `The reference has no image of ${layer.label}.`);
     try {
         const image = await loadImage(file);
         if (!entry.error) return { entry, image, reference: null, problem: "" };
@@ -147,7 +148,11 @@ export function paint(loaded: Loaded, layer: Layer, how: Paint): HTMLCanvasEleme
             if (value === kNoNumber) put(pixel, kNoProbe);
             else put(pixel, layer.key === "probe" ? categorical(value) : sequential(value / how.top));
         } else if (image.halves) {
-            const [r, g, b] = [image.halves[3 * pixel] as number, image.halves[3 * pixel + 1] as number, image.halves[3 * pixel + 2] as number];
+            const [r, g, b] = [
+                image.halves[3 * pixel] as number,
+                image.halves[3 * pixel + 1] as number,
+                image.halves[3 * pixel + 2] as number,
+            ];
             const broken = Number.isNaN(halfValues[r]) || Number.isNaN(halfValues[g]) || Number.isNaN(halfValues[b]);
             put(pixel, broken ? kNotANumber : [how.tones[r] as number, how.tones[g] as number, how.tones[b] as number]);
         }

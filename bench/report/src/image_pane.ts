@@ -28,7 +28,10 @@ export function imagePane(width: number, height: number, label: string): Pane {
         pixelAt(clientX, clientY, view) {
             const area = canvas.getBoundingClientRect();
             const zoom = zoomOf(view);
-            return [Math.floor(view.x + (clientX - area.left - area.width / 2) / zoom), Math.floor(view.y + (clientY - area.top - area.height / 2) / zoom)];
+            return [
+                Math.floor(view.x + (clientX - area.left - area.width / 2) / zoom),
+                Math.floor(view.y + (clientY - area.top - area.height / 2) / zoom),
+            ];
         },
         draw(left, right, split, view, cursor) {
             const scale = devicePixelRatio;
@@ -58,7 +61,10 @@ export function imagePane(width: number, height: number, label: string): Pane {
             if (!cursor) return;
             const size = Math.max(zoom, 7 * scale);
             const [cx, cy] = [w / 2 + (cursor[0] + 0.5 - view.x) * zoom, hgt / 2 + (cursor[1] + 0.5 - view.y) * zoom];
-            for (const [colour, line] of [["#000", 3], ["#fff", 1]] as const) {
+            for (const [colour, line] of [
+                ["#000", 3],
+                ["#fff", 1],
+            ] as const) {
                 context.strokeStyle = colour;
                 context.lineWidth = line * scale;
                 context.strokeRect(cx - size / 2, cy - size / 2, size, size);

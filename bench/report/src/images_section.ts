@@ -1,8 +1,21 @@
 // Ours, the baseline, the reference and their errors: beside each other with a divider, or all at once, at one place and exposure.
-import { categorical, css, gradient, kNoProbe } from "./colour_maps";
+import { onDrag } from "./drag";
 import { h, perFrame, section, segments, type Segments } from "./dom";
 import { number } from "./format";
-import { autoExposure, entriesOf, kLayers, load, paint, pixelText, toneTable, topOf, type Entry, type Layer, type Loaded } from "./image_layers";
+import {
+    autoExposure,
+    entriesOf,
+    kLayers,
+    load,
+    paint,
+    pixelText,
+    toneTable,
+    topOf,
+    type Entry,
+    type Layer,
+    type Loaded,
+} from "./image_layers";
+import { keysHelp, legendOf } from "./image_legend";
 import { imagePane, type Pane, type View } from "./image_pane";
 import type { ReportImage } from "./report_image";
 import type { Scene } from "./results";
@@ -15,7 +28,8 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     const entries = entriesOf(scene);
     const layers = kLayers.filter((layer) => entries.some((entry) => entry.images[layer.key]));
     const [width, height] = [scene.width ?? 0, scene.height ?? 0];
-    if (entries.length === 0 || layers.length === 0 || !(width > 0 && height > 0)) return section("images", "Images", h("p", { class: "note" }, "This scene has no images."));
+    if (entries.length === 0 || layers.length === 0 || !(width > 0 && height > 0))
+        return section("images", "Images", h("p", { class: "note" }, "This scene has no images."));
 
     const truth = entries.find((entry) => !entry.point);
     const errorStart = entries.findIndex((entry) => entry.error);
@@ -36,40 +50,48 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     const choices = entries.map((entry, index) => ({ value: String(index), label: entry.label, key: keyOf(index) }));
     const leftChoice: Segments = segments("Left", choices, String(left), (value) => choose("left", Number(value)));
     const rightChoice: Segments = segments("Right", choices, String(right), (value) => choose("right", Number(value)));
-    const layerChoice: Segments = segments("Layer", layers.map((one) => ({ value: one.key, label: one.label })), layer.key, (value) => setLayer(value));
-    const modeChoice: Segments = segments("View", [{ value: "divider", label: "divider" }, { value: "all", label: "all" }], "divider", (value) => setAll(value === "all"));
-    const exposure = h("input", { type: "range", min: -kStops, max: kStops, step: 0.25, value: 0, "aria-label": "Exposure, stops", input: () => setExposure(Number(exposure.value)) });
+    const layerChoice: Segments = segments(
+        "Layer",
+        layers.map((one) => ({ value: one.key, label: one.label })),
+        layer.key,
+        (value) => setLayer(value),
+    );
+    const modeChoice: Segments = segments(
+        "View",
+        [
+            { value: "divider", label: "divider" },
+            { value: "all", label: "all" },
+        ],
+        "divider",
+        (value) => setAll(value === "all"),
+    );
+    const exposure = h("input", {
+        type: "range",
+        min: -kStops,
+        max: kStops,
+        step: 0.25,
+        value: 0,
+        "aria-label": "Exposure, stops",
+        input: () => setExposure(Number(exposure.value)),
+    });
     const exposureText = h("output", { class: "exposure" });
     const zoomText = h("output", { class: "zoom" });
-    const button = (text: string, title: string, press: () => void): HTMLElement => h("button", { type: "button", title, "aria-label": title, click: press }, text);
-    const handle = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": "Divider between left and right image", "aria-valuemin": 0, "aria-valuemax": 100 });
+    const button = (text: string, title: string, press: () => void): HTMLElement =>
+        h("button", { type: "button", title, "aria-label": title, click: press }, text);
+    const handle = h("div", {
+        class: "handle",
+        role: "slider",
+        tabindex: 0,
+        "aria-label": "Divider between left and right image",
+        "aria-valuemin": 0,
+        "aria-valuemax": 100,
+    });
     const leftName = h("span", { class: "badge left" });
     const rightName = h("span", { class: "badge right" });
     const problem = h("p", { class: "problem", role: "status" });
     const stage = h("div", { class: "stage" });
     const values = h("dl", { class: "values", "aria-live": "polite" });
     const legend = h("div", { class: "colours" });
-    const keys = h(
-        "details",
-        { class: "keys" },
-        h("summary", {}, "Keys"),
-        h(
-            "dl",
-            {},
-            ...[
-                ["1–9", "left image"],
-                ["Shift 1–9", "right image"],
-                ["X", "swap left and right"],
-                ["L", "next layer"],
-                ["V", "divider or all"],
-                ["[ and ]", "darker, brighter"],
-                ["+ and -", "zoom"],
-                ["0", "whole image"],
-                ["arrows", "pixel by pixel; the divider when it has the focus"],
-                ["Shift arrows", "move the image"],
-            ].flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key ?? "")), h("dd", {}, what ?? "")]),
-        ),
-    );
     const viewer = h(
         "div",
         { class: "viewer" },
@@ -77,10 +99,25 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         h(
             "div",
             { class: "controls" },
-            h("div", { class: "field" }, h("span", {}, "Exposure"), exposure, exposureText, button("auto", "auto exposure", () => setExposure(0))),
-            h("div", { class: "field" }, h("span", {}, "Zoom"), button("−", "Zoom out", () => zoomBy(1 / 1.5)), zoomText, button("+", "Zoom in", () => zoomBy(1.5)), button("whole", "Whole image", () => whole())),
+            h(
+                "div",
+                { class: "field" },
+                h("span", {}, "Exposure"),
+                exposure,
+                exposureText,
+                button("auto", "auto exposure", () => setExposure(0)),
+            ),
+            h(
+                "div",
+                { class: "field" },
+                h("span", {}, "Zoom"),
+                button("−", "Zoom out", () => zoomBy(1 / 1.5)),
+                zoomText,
+                button("+", "Zoom in", () => zoomBy(1.5)),
+                button("whole", "Whole image", () => whole()),
+            ),
         ),
-        h("div", { class: "viewer-body" }, stage, h("div", { class: "beside" }, values, legend, problem, keys)),
+        h("div", { class: "viewer-body" }, stage, h("div", { class: "beside" }, values, legend, problem, keysHelp())),
     );
 
     // What each control does.
@@ -120,7 +157,10 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         const least = pane.zoomOf({ ...view, zoom: 0 });
         const zoom = Math.min(kZoomMost, Math.max(least, before * factor));
         const area = pane.canvas.getBoundingClientRect();
-        const [dx, dy] = [(clientX ?? area.left + area.width / 2) - area.left - area.width / 2, (clientY ?? area.top + area.height / 2) - area.top - area.height / 2];
+        const [dx, dy] = [
+            (clientX ?? area.left + area.width / 2) - area.left - area.width / 2,
+            (clientY ?? area.top + area.height / 2) - area.top - area.height / 2,
+        ];
         if (zoom <= least * 1.001) return whole();
         move(view.x + dx / before - dx / zoom, view.y + dy / before - dy / zoom, zoom);
     }
@@ -158,7 +198,8 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         exposureText.textContent = `${stops >= 0 ? "+" : "−"}${Math.abs(stops).toFixed(2)} EV`;
         exposureText.title = `radiance × ${number(auto * 2 ** stops)}`;
         problem.textContent = [...new Set(shown.map((one) => one.loaded.problem).filter(Boolean))].join(" ");
-        drawLegend(how.top, images);
+        const errors = shown.some((one) => one.loaded.entry.error && one.loaded.image);
+        legend.replaceChildren(...legendOf(layer, images, how.top, errors));
         redraw();
     }
     const drawPanes = perFrame(() => {
@@ -176,58 +217,42 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         drawValues();
     }
     function drawValues(): void {
-        const rows: Node[] = [h("dt", {}, "pixel"), h("dd", {}, cursor ? `${cursor[0]}, ${cursor[1]}` : "point at the image, or use the arrows")];
-        for (const one of cursor ? shown : []) rows.push(h("dt", { title: one.loaded.entry.label }, one.loaded.entry.label), h("dd", {}, cursor ? pixelText(one.loaded, layer, cursor[0], cursor[1], probeText) : ""));
+        const rows: Node[] = [
+            h("dt", {}, "pixel"),
+            h("dd", {}, cursor ? `${cursor[0]}, ${cursor[1]}` : "point at the image, or use the arrows"),
+        ];
+        for (const one of cursor ? shown : [])
+            rows.push(
+                h("dt", { title: one.loaded.entry.label }, one.loaded.entry.label),
+                h("dd", {}, cursor ? pixelText(one.loaded, layer, cursor[0], cursor[1], probeText) : ""),
+            );
         values.replaceChildren(...rows);
     }
     function probeText(entry: Entry, probe: number): string {
         const found = scene.probe_sets?.[entry.point?.probe_set ?? ""]?.probes?.[probe];
         return found ? `probe ${probe} at ${found.position.map((part) => number(part)).join(", ")}: ${found.why ?? ""}` : `probe ${probe}`;
     }
-    function drawLegend(top: number, images: ReportImage[]): void {
-        const error = shown.some((one) => one.loaded.entry.error && one.loaded.image);
-        const bar = (low: string, high: string): HTMLElement => h("div", {}, h("div", { class: "bar", style: `background: ${gradient()}` }), h("div", { class: "ends" }, h("span", {}, low), h("span", {}, high)));
-        const swatch = (colour: string, text: string): HTMLElement => h("span", { class: "swatch" }, h("i", { style: `background: ${colour}` }), text);
-        const parts: Node[] = [];
-        if (error) parts.push(h("h4", {}, "Error"), bar("0", "1 and more"), h("p", { class: "note" }, "√ of (a − b)² / (b² + 0.01), mean of the channels; b the reference."));
-        if (layer.key === "probe" && images.length > 0) {
-            const used = [...new Set(images.flatMap((image) => Array.from(image.numbers ?? [])))].filter((value) => value !== 0xffffffff).sort((a, b) => a - b);
-            parts.push(h("h4", {}, `Probe that answered (${used.length} in view)`), h("div", { class: "swatches" }, ...used.slice(0, 40).map((index) => swatch(css(categorical(index)), String(index))), swatch(css(kNoProbe), "none"), used.length > 40 ? "…" : ""));
-        } else if (!layer.colours && images.length > 0)
-            parts.push(h("h4", {}, `${layer.label} a pixel`), bar("0", `${top} and more`), swatch(css(kNoProbe), "no ray"));
-        legend.replaceChildren(...parts);
-    }
-
     function layOut(): void {
         const label = (text: string): string => `${text}. Arrow keys move from pixel to pixel.`;
-        panes = all ? entries.map((entry) => imagePane(width, height, label(entry.label))) : [imagePane(width, height, label("Left and right image"))];
+        panes = all
+            ? entries.map((entry) => imagePane(width, height, label(entry.label)))
+            : [imagePane(width, height, label("Left and right image"))];
         stage.className = all ? "stage all" : "stage";
         stage.style.setProperty("--aspect", String(width / height));
-        if (all) stage.replaceChildren(...panes.map((pane, index) => h("figure", {}, pane.canvas, h("figcaption", { class: "clip" }, h("kbd", {}, keyOf(index) ?? ""), ` ${entries[index]?.label ?? ""}`))));
+        if (all)
+            stage.replaceChildren(
+                ...panes.map((pane, index) =>
+                    h(
+                        "figure",
+                        {},
+                        pane.canvas,
+                        h("figcaption", { class: "clip" }, h("kbd", {}, keyOf(index) ?? ""), ` ${entries[index]?.label ?? ""}`),
+                    ),
+                ),
+            );
         else stage.replaceChildren((panes[0] as Pane).canvas, leftName, rightName, handle);
         for (const pane of panes) listen(pane);
         new ResizeObserver(redraw).observe((panes[0] as Pane).canvas);
-    }
-
-    /** Calls `moved` with every step of a drag that begins on the element. */
-    function onDrag(element: HTMLElement, moved: (event: PointerEvent, dx: number, dy: number) => void): void {
-        element.addEventListener("pointerdown", (down) => {
-            if (down.button !== 0) return;
-            element.setPointerCapture(down.pointerId);
-            let [x, y] = [down.clientX, down.clientY];
-            const step = (event: PointerEvent): void => {
-                moved(event, event.clientX - x, event.clientY - y);
-                [x, y] = [event.clientX, event.clientY];
-            };
-            const end = (): void => {
-                element.removeEventListener("pointermove", step);
-                element.removeEventListener("pointerup", end);
-                element.removeEventListener("pointercancel", end);
-            };
-            element.addEventListener("pointermove", step);
-            element.addEventListener("pointerup", end);
-            element.addEventListener("pointercancel", end);
-        });
     }
 
     function listen(pane: Pane): void {
@@ -271,7 +296,14 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     });
     handle.addEventListener("keydown", (event) => {
         const step = event.shiftKey ? 0.1 : 0.02;
-        const to: Record<string, number> = { ArrowLeft: split - step, ArrowDown: split - step, ArrowRight: split + step, ArrowUp: split + step, Home: 0, End: 1 };
+        const to: Record<string, number> = {
+            ArrowLeft: split - step,
+            ArrowDown: split - step,
+            ArrowRight: split + step,
+            ArrowUp: split + step,
+            Home: 0,
+            End: 1,
+        };
         const share = to[event.key];
         if (share === undefined) return;
         event.preventDefault();
@@ -308,10 +340,18 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
 
     layOut();
     // Unpacked when it comes near the window: a page of many scenes opens at once.
-    new IntersectionObserver((seen, observer) => {
-        if (!seen.some((one) => one.isIntersecting)) return;
-        observer.disconnect();
-        void reload();
-    }, { rootMargin: "400px" }).observe(viewer);
-    return section("images", "Images", errorStart < 0 ? h("p", { class: "note" }, "There is no reference image, so no error can be shown.") : null, viewer);
+    new IntersectionObserver(
+        (seen, observer) => {
+            if (!seen.some((one) => one.isIntersecting)) return;
+            observer.disconnect();
+            void reload();
+        },
+        { rootMargin: "400px" },
+    ).observe(viewer);
+    return section(
+        "images",
+        "Images",
+        errorStart < 0 ? h("p", { class: "note" }, "There is no reference image, so no error can be shown.") : null,
+        viewer,
+    );
 }

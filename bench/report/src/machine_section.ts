@@ -10,9 +10,14 @@ function list(title: string, rows: [string, string][]): HTMLElement {
     return h("div", {}, h("h3", {}, title), entries);
 }
 
-const kUnits: [RegExp, string][] = [[/_mb$/, ", MB"], [/_ms$/, ", ms"], [/_s$/, ", s"]];
+const kUnits: [RegExp, string][] = [
+    [/_mb$/, ", MB"],
+    [/_ms$/, ", ms"],
+    [/_s$/, ", s"],
+];
 const readable = (key: string): string => kUnits.reduce((text, [end, unit]) => text.replace(end, unit), key).replaceAll("_", " ");
-const rowsOf = (object: Record<string, unknown> | undefined): [string, string][] => Object.entries(object ?? {}).map(([key, value]) => [readable(key), plain(value)]);
+const rowsOf = (object: Record<string, unknown> | undefined): [string, string][] =>
+    Object.entries(object ?? {}).map(([key, value]) => [readable(key), plain(value)]);
 
 function command(text: string): HTMLElement {
     const state = h("span", { role: "status", class: "note" });
@@ -31,14 +36,21 @@ function command(text: string): HTMLElement {
 export function machineSection(results: Results, scene: Scene): HTMLElement {
     const reference = scene.reference ?? {};
     const vector = (value: number[] | undefined): string => (value ? value.map((part) => number(part, 4)).join(", ") : "–");
-    const noise = Object.entries(reference.estimated_relmse ?? {}).map(([layer, value]) => `${layer} ${number(value)}`).join(", ");
+    const noise = Object.entries(reference.estimated_relmse ?? {})
+        .map(([layer, value]) => `${layer} ${number(value)}`)
+        .join(", ");
     return section(
         "machine",
         "Machine, scene and commands",
         h(
             "div",
             { class: "machine" },
-            list("Machine", [...rowsOf(results.machine), ["started", plain(results.started)], ["whole run", seconds(results.seconds)], ["Sconce", plain(results.version)]]),
+            list("Machine", [
+                ...rowsOf(results.machine),
+                ["started", plain(results.started)],
+                ["whole run", seconds(results.seconds)],
+                ["Sconce", plain(results.version)],
+            ]),
             list("Vulkan device", rowsOf(results.device)),
             list("Scene", [
                 ["file", plain(scene.source)],
@@ -55,6 +67,8 @@ export function machineSection(results: Results, scene: Scene): HTMLElement {
             ]),
         ),
         h("h3", {}, "Commands"),
-        (results.commands ?? []).length > 0 ? h("ol", { class: "commands" }, ...(results.commands ?? []).map(command)) : h("p", { class: "note" }, "No commands were recorded."),
+        (results.commands ?? []).length > 0
+            ? h("ol", { class: "commands" }, ...(results.commands ?? []).map(command))
+            : h("p", { class: "note" }, "No commands were recorded."),
     );
 }

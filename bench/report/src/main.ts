@@ -31,38 +31,75 @@ function build(page: HTMLElement, results: Results): void {
             ["Points", pointsSection(scene, styles, store)],
             ["Machine", machineSection(results, scene)],
         ];
-        const unit = h("p", { class: "note" }, [scene.source, scene.triangles ? `${scene.triangles.toLocaleString("en-GB")} triangles` : "", scene.width ? `${scene.width} × ${scene.height}` : "", counted(points(scene).length, "point")].filter(Boolean).join(" · "));
-        body.replaceChildren(h("div", { class: "scene-head" }, h("h2", { class: "clip", title: scene.name }, scene.name), unit), ...parts.map(([, part]) => part));
-        const links = parts.map(([name, part]) => h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, name));
+        const unit = h(
+            "p",
+            { class: "note" },
+            [
+                scene.source,
+                scene.triangles ? `${scene.triangles.toLocaleString("en-GB")} triangles` : "",
+                scene.width ? `${scene.width} × ${scene.height}` : "",
+                counted(points(scene).length, "point"),
+            ]
+                .filter(Boolean)
+                .join(" · "),
+        );
+        body.replaceChildren(
+            h("div", { class: "scene-head" }, h("h2", { class: "clip", title: scene.name }, scene.name), unit),
+            ...parts.map(([, part]) => part),
+        );
+        const links = parts.map(([name, part]) =>
+            h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, name),
+        );
         nav.replaceChildren(...links);
     };
 
     const address = readAddress();
     const theme = (["auto", "light", "dark"].includes(address.get("theme") ?? "") ? address.get("theme") : "auto") as Theme;
     setTheme(theme);
-    const themes = segments("Theme", [{ value: "auto", label: "auto" }, { value: "light", label: "light" }, { value: "dark", label: "dark" }], theme, (value) => {
-        setTheme(value as Theme);
-        writeAddress("theme", value);
-        store.tell("theme");
-    });
+    const themes = segments(
+        "Theme",
+        [
+            { value: "auto", label: "auto" },
+            { value: "light", label: "light" },
+            { value: "dark", label: "dark" },
+        ],
+        theme,
+        (value) => {
+            setTheme(value as Theme);
+            writeAddress("theme", value);
+            store.tell("theme");
+        },
+    );
     onSystemTheme(() => store.tell("theme"));
 
     const first = scenes.find((scene) => scene.name === address.get("scene")) ?? scenes[0];
-    const choice = segments("Scene", scenes.map((scene, index) => ({ value: String(index), label: scene.name })), String(first ? scenes.indexOf(first) : 0), (value) => {
-        const scene = scenes[Number(value)];
-        if (!scene) return;
-        writeAddress("scene", scene.name);
-        showScene(scene);
-    });
+    const choice = segments(
+        "Scene",
+        scenes.map((scene, index) => ({ value: String(index), label: scene.name })),
+        String(first ? scenes.indexOf(first) : 0),
+        (value) => {
+            const scene = scenes[Number(value)];
+            if (!scene) return;
+            writeAddress("scene", scene.name);
+            showScene(scene);
+        },
+    );
     const answers = results.answers ?? [];
-    const header = h("header", {}, h("div", { class: "title" }, h("h1", {}, "Sconce: what accuracy costs in time"), nav, themes.element), scenes.length > 1 ? choice.element : null);
+    const header = h(
+        "header",
+        {},
+        h("div", { class: "title" }, h("h1", {}, "Sconce: what accuracy costs in time"), nav, themes.element),
+        scenes.length > 1 ? choice.element : null,
+    );
     new ResizeObserver(() => document.documentElement.style.setProperty("--header", `${header.offsetHeight}px`)).observe(header);
     page.replaceChildren(
         header,
         h(
             "main",
             {},
-            answers.length > 0 ? section("answers", "In short", h("ul", { class: "answers" }, ...answers.map((answer) => h("li", {}, answer)))) : null,
+            answers.length > 0
+                ? section("answers", "In short", h("ul", { class: "answers" }, ...answers.map((answer) => h("li", {}, answer))))
+                : null,
             first ? body : h("p", { class: "note" }, "This run has no scenes."),
         ),
     );
@@ -70,7 +107,14 @@ function build(page: HTMLElement, results: Results): void {
 }
 
 function fail(page: HTMLElement, problem: unknown): void {
-    page.replaceChildren(h("main", {}, h("h1", {}, "This report can't be shown"), h("p", { role: "alert", class: "wrong" }, problem instanceof Error ? problem.message : String(problem))));
+    page.replaceChildren(
+        h(
+            "main",
+            {},
+            h("h1", {}, "This report can't be shown"),
+            h("p", { role: "alert", class: "wrong" }, problem instanceof Error ? problem.message : String(problem)),
+        ),
+    );
 }
 
 const page = document.getElementById("page");

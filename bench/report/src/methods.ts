@@ -25,7 +25,10 @@ export interface MethodStyle {
 /** Styles of all methods of a run, the known ones always alike. */
 export function methodStyles(methods: string[]): Map<string, MethodStyle> {
     const order = [...kKnown, ...methods.filter((method) => !kKnown.includes(method))];
-    const style = (index: number): MethodStyle => ({ colour: `--method-${index % kColours}`, outline: kShapes[index % kShapes.length] as string });
+    const style = (index: number): MethodStyle => ({
+        colour: `--method-${index % kColours}`,
+        outline: kShapes[index % kShapes.length] as string,
+    });
     return new Map(order.map((method, index) => [method, style(index)]));
 }
 

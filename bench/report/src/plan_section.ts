@@ -2,6 +2,7 @@
 import { categorical, css } from "./colour_maps";
 import { h, section, segments, select, svg } from "./dom";
 import { counted, number, percent, seconds } from "./format";
+import { swatch } from "./image_legend";
 import { points, type ProbeSet, type Scene } from "./results";
 import { table, type Column } from "./table";
 import { hideTooltip, showTooltip } from "./tooltip";
@@ -14,10 +15,21 @@ const kReach = 14; // CSS pixels
 
 /** What stands before the first comma or number of `why`: the reasons fall into few kinds. */
 function reasonOf(probe: Probe): string {
-    return (probe.why ?? "").split(",")[0]?.replace(/[\s\d.:;-]+$/, "").trim() || "no reason given";
+    return (
+        (probe.why ?? "")
+            .split(",")[0]
+            ?.replace(/[\s\d.:;-]+$/, "")
+            .trim() || "no reason given"
+    );
 }
 
-function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen: (probe: number) => void): { element: HTMLElement; mark(probe: number): void } {
+function plan(
+    scene: Scene,
+    set: ProbeSet,
+    side: Side,
+    reasons: string[],
+    chosen: (probe: number) => void,
+): { element: HTMLElement; mark(probe: number): void } {
     const [right, down, toward] = kAxes[side];
     const probes = set.probes ?? [];
     const low = [...(scene.bounds?.min ?? [Infinity, Infinity, Infinity])];
@@ -37,10 +49,13 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
     const radius = 0.011 * size;
 
     const walls = side === "above" ? (scene.plan?.segments ?? []).map(([x0, z0, x1, z1]) => `M${x0} ${z0}L${x1} ${z1}`).join("") : "";
-    const drawing = svg(
-        "svg",
-        { class: "plan", viewBox: box.join(" "), tabindex: 0, role: "application", "aria-label": `${counted(probes.length, "probe")} seen from ${side === "above" ? "above" : `the ${side}`}. Arrow keys go from probe to probe.` },
-    );
+    const drawing = svg("svg", {
+        class: "plan",
+        viewBox: box.join(" "),
+        tabindex: 0,
+        role: "application",
+        "aria-label": `${counted(probes.length, "probe")} seen from ${side === "above" ? "above" : `the ${side}`}. Arrow keys go from probe to probe.`,
+    });
     // Under the probes in a drawing of its own: thousands of lines are not drawn again for every probe that lights up.
     const ground = svg(
         "svg",
@@ -51,7 +66,13 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
     const dots = probes.map((probe, index) => {
         const [x, y] = place(probe.position);
         const near = (((probe.position[toward] as number) - (low[toward] as number)) / span(toward)) * 0.6 + 0.7; // nearer to the eye is larger
-        return svg("circle", { cx: x, cy: y, r: radius * near, fill: css(categorical(reasons.indexOf(reasonOf(probe)))), "data-probe": index });
+        return svg("circle", {
+            cx: x,
+            cy: y,
+            r: radius * near,
+            fill: css(categorical(reasons.indexOf(reasonOf(probe)))),
+            "data-probe": index,
+        });
     });
     const order = dots.map((_, index) => index).sort((a, b) => (probes[a]?.position[toward] ?? 0) - (probes[b]?.position[toward] ?? 0));
     drawing.append(...order.map((index) => dots[index] as SVGCircleElement));
@@ -68,7 +89,14 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
         const area = (dots[first] as SVGCircleElement).getBoundingClientRect();
         const lines = found.slice(0, 6).map((index) => {
             const probe = probes[index] as Probe;
-            return h("p", {}, h("strong", {}, `probe ${index}`), ` at ${probe.position.map((value) => number(value)).join(", ")}`, h("br"), probe.why ?? "no reason given");
+            return h(
+                "p",
+                {},
+                h("strong", {}, `probe ${index}`),
+                ` at ${probe.position.map((value) => number(value)).join(", ")}`,
+                h("br"),
+                probe.why ?? "no reason given",
+            );
         });
         showTooltip(area.right, area.top, ...lines, ...(found.length > 6 ? [`and ${found.length - 6} more here`] : []));
     };
@@ -108,24 +136,45 @@ function plan(scene: Scene, set: ProbeSet, side: Side, reasons: string[], chosen
 export function planSection(scene: Scene): HTMLElement {
     const sets = Object.entries(scene.probe_sets ?? {}).filter(([, set]) => (set.probes ?? []).length > 0);
     if (sets.length === 0) return section("probes", "Probes", h("p", { class: "note" }, "This scene has no probe sets."));
-    const setOf = (name: string): ProbeSet => (scene.probe_sets?.[name] as ProbeSet);
+    const setOf = (name: string): ProbeSet => scene.probe_sets?.[name] as ProbeSet;
     const defaults = points(scene).filter((point) => point.knob === "default" && point.probe_set);
-    const firstName = defaults.find((point) => point.method === "ours" && sets.some(([name]) => name === point.probe_set))?.probe_set ?? (sets[0] as [string, ProbeSet])[0];
+    const firstName =
+        defaults.find((point) => point.method === "ours" && sets.some(([name]) => name === point.probe_set))?.probe_set ??
+        (sets[0] as [string, ProbeSet])[0];
     const count = setOf(firstName).probes?.length ?? 0;
     const others = sets.filter(([name]) => name !== firstName);
     // beside it: a grid with about as many probes, where there is one
-    others.sort(([, a], [, b]) => Number(b.method === "grid") - Number(a.method === "grid") || Math.abs((a.probes?.length ?? 0) - count) - Math.abs((b.probes?.length ?? 0) - count));
+    others.sort(
+        ([, a], [, b]) =>
+            Number(b.method === "grid") - Number(a.method === "grid") ||
+            Math.abs((a.probes?.length ?? 0) - count) - Math.abs((b.probes?.length ?? 0) - count),
+    );
     const names = [firstName, ...(others[0] ? [others[0][0]] : [])];
     const reasons = [...new Set(sets.flatMap(([, set]) => (set.probes ?? []).map(reasonOf)))].sort();
     let side: Side = "above";
 
     const body = h("div", { class: "plans" });
-    const legend = h("div", { class: "swatches" }, ...reasons.slice(0, 24).map((reason, index) => h("span", { class: "swatch" }, h("i", { style: `background: ${css(categorical(index))}` }), reason)), reasons.length > 24 ? "…" : "");
+    const legend = h(
+        "div",
+        { class: "swatches" },
+        ...reasons.slice(0, 24).map((reason, index) => swatch(categorical(index), reason)),
+        reasons.length > 24 ? "…" : "",
+    );
     const axes = h("p", { class: "note" });
 
     const probeColumns = (of: ProbeSet): Column<Probe>[] => [
-        { head: "probe", numeric: true, sortBy: (probe) => of.probes?.indexOf(probe) ?? 0, show: (probe) => String(of.probes?.indexOf(probe) ?? 0) },
-        ...kNames.map((name, axis): Column<Probe> => ({ head: `${name}, m`, numeric: true, sortBy: (probe) => probe.position[axis] ?? null, show: (probe) => number(probe.position[axis]) })),
+        {
+            head: "probe",
+            numeric: true,
+            sortBy: (probe) => of.probes?.indexOf(probe) ?? 0,
+            show: (probe) => String(of.probes?.indexOf(probe) ?? 0),
+        },
+        ...kNames.map((name, axis): Column<Probe> => ({
+            head: `${name}, m`,
+            numeric: true,
+            sortBy: (probe) => probe.position[axis] ?? null,
+            show: (probe) => number(probe.position[axis]),
+        })),
         { head: "why it is there", sortBy: (probe) => probe.why ?? null, show: (probe) => probe.why ?? "" },
     ];
     const update = (): void => {
@@ -148,18 +197,39 @@ export function planSection(scene: Scene): HTMLElement {
                     set.coverage?.rays !== undefined ? `${percent(set.coverage?.rays)} % of surface rays seen` : "",
                     set.seconds !== undefined ? `placed in ${seconds(set.seconds)}` : "",
                 ];
-                const choice = select(`Set ${index + 1}`, sets.map(([value]) => ({ value, label: value })), name, (value) => {
-                    names[index] = value;
-                    update();
-                });
-                return h("div", { class: "plan-cell" }, choice, h("p", { class: "note" }, facts.filter(Boolean).join(" · ")), drawn.element, list);
+                const choice = select(
+                    `Set ${index + 1}`,
+                    sets.map(([value]) => ({ value, label: value })),
+                    name,
+                    (value) => {
+                        names[index] = value;
+                        update();
+                    },
+                );
+                return h(
+                    "div",
+                    { class: "plan-cell" },
+                    choice,
+                    h("p", { class: "note" }, facts.filter(Boolean).join(" · ")),
+                    drawn.element,
+                    list,
+                );
             }),
         );
     };
-    const sides = segments("Seen from", [{ value: "above", label: "above" }, { value: "front", label: "the front" }, { value: "side", label: "the side" }], side, (value) => {
-        side = value as Side;
-        update();
-    });
+    const sides = segments(
+        "Seen from",
+        [
+            { value: "above", label: "above" },
+            { value: "front", label: "the front" },
+            { value: "side", label: "the side" },
+        ],
+        side,
+        (value) => {
+            side = value as Side;
+            update();
+        },
+    );
     update();
     return section("probes", "Probes", h("div", { class: "controls" }, sides.element, legend), axes, body);
 }

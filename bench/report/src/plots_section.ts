@@ -19,15 +19,27 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
 
     const legend = h("div", { class: "legend", role: "group", "aria-label": "Methods shown" });
     for (const method of methodsOf(scene)) {
-        const button = h("button", { type: "button", "aria-pressed": "true", title: `Show or hide ${method}`, click: () => store.toggle(method) }, glyph(styles.get(method)), h("span", { class: "clip" }, method));
+        const button = h(
+            "button",
+            { type: "button", "aria-pressed": "true", title: `Show or hide ${method}`, click: () => store.toggle(method) },
+            glyph(styles.get(method)),
+            h("span", { class: "clip" }, method),
+        );
         store.on(["filter"], () => button.setAttribute("aria-pressed", String(!store.hidden.has(method))));
         legend.append(button);
     }
     const knobs = [...new Set(points(scene).map((point) => point.knob))].filter((knob) => knob && knob !== "default");
-    const errors = select("Error", offered.map((of) => ({ value: of.key, label: of.label })), first.key, (key) => {
-        for (const plot of plots) plot.setError(figure(key));
-    });
-    const knob = select("Knob", [{ value: "", label: "all" }, ...knobs.map((name) => ({ value: name, label: name }))], "", (name) => store.highlight(name));
+    const errors = select(
+        "Error",
+        offered.map((of) => ({ value: of.key, label: of.label })),
+        first.key,
+        (key) => {
+            for (const plot of plots) plot.setError(figure(key));
+        },
+    );
+    const knob = select("Knob", [{ value: "", label: "all" }, ...knobs.map((name) => ({ value: name, label: name }))], "", (name) =>
+        store.highlight(name),
+    );
     return section(
         "plots",
         "What accuracy costs",
@@ -41,4 +53,3 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
         details(styles, store),
     );
 }
-

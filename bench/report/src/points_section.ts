@@ -7,7 +7,18 @@ import { nameOf, points, type Point, type Scene } from "./results";
 import type { Store } from "./store";
 import { table, type Column } from "./table";
 
-const kOverview = ["frame_ms", "trace_ms", "rays.reads_mean", "rays.wrong", "error.glossy.relmse", "error.diffuse.relmse", "error.beauty.flip", "bytes.total", "bake_s", "place_s"];
+const kOverview = [
+    "frame_ms",
+    "trace_ms",
+    "rays.reads_mean",
+    "rays.wrong",
+    "error.glossy.relmse",
+    "error.diffuse.relmse",
+    "error.beauty.flip",
+    "bytes.total",
+    "bake_s",
+    "place_s",
+];
 
 function column(of: Figure): Column<Point> {
     return { head: headOf(of), title: of.label, numeric: true, sortBy: (point) => of.of(point), show: (point) => of.show(of.of(point)) };
@@ -45,12 +56,27 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
             head: "setting",
             title: "The knob that this point varies from the default",
             sortBy: nameOf,
-            show: (point) => h("span", { class: "setting" }, h("span", { class: "clip", title: nameOf(point) }, nameOf(point)), point.wrong ? h("span", { class: "tag wrong", title: point.wrong }, "wrong image") : null),
+            show: (point) =>
+                h(
+                    "span",
+                    { class: "setting" },
+                    h("span", { class: "clip", title: nameOf(point) }, nameOf(point)),
+                    point.wrong ? h("span", { class: "tag wrong", title: point.wrong }, "wrong image") : null,
+                ),
         },
     ];
     const groups: Record<string, () => Column<Point>[]> = {
         overview: () => measured(all, kOverview.map(figure)).map(column),
-        ...Object.fromEntries(["time", "rays", "error", "memory"].map((group) => [group, () => measured(all, figures.filter((of) => of.group === group)).map(column)])),
+        ...Object.fromEntries(
+            ["time", "rays", "error", "memory"].map((group) => [
+                group,
+                () =>
+                    measured(
+                        all,
+                        figures.filter((of) => of.group === group),
+                    ).map(column),
+            ]),
+        ),
         settings: () => settingColumns(all),
     };
     const columnsOf = (group: string): Column<Point>[] => [...first, ...(groups[group]?.() ?? [])];
@@ -62,7 +88,9 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
     const update = (): void => {
         const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
         const rows = all.filter((point) => {
-            const text = `${point.id} ${point.method} ${nameOf(point)} ${point.wrong ? "wrong" : ""} ${Object.entries(point.settings ?? {}).flat().join(" ")}`.toLowerCase();
+            const text = `${point.id} ${point.method} ${nameOf(point)} ${point.wrong ? "wrong" : ""} ${Object.entries(point.settings ?? {})
+                .flat()
+                .join(" ")}`.toLowerCase();
             return store.visible(point) && words.every((word) => text.includes(word));
         });
         grid.setRows(rows);
@@ -77,9 +105,19 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
     store.on(["pick"], mark);
     update();
 
-    const choice = segments("Columns", Object.keys(groups).map((group) => ({ value: group, label: group })), "overview", (group) => {
-        grid.setColumns(columnsOf(group));
-        mark();
-    });
-    return section("points", "Every point", h("div", { class: "controls" }, choice.element, h("label", { class: "field" }, h("span", {}, "Filter"), filter), count), grid.element);
+    const choice = segments(
+        "Columns",
+        Object.keys(groups).map((group) => ({ value: group, label: group })),
+        "overview",
+        (group) => {
+            grid.setColumns(columnsOf(group));
+            mark();
+        },
+    );
+    return section(
+        "points",
+        "Every point",
+        h("div", { class: "controls" }, choice.element, h("label", { class: "field" }, h("span", {}, "Filter"), filter), count),
+        grid.element,
+    );
 }

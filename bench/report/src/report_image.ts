@@ -37,7 +37,12 @@ async function unpack(name: string): Promise<ReportImage> {
     const width = header.getUint32(4, true);
     const height = header.getUint32(8, true);
     const halves = header.getUint32(12, true) === 0;
-    return { width, height, halves: halves ? new Uint16Array(buffer, kHeader) : null, numbers: halves ? null : new Uint32Array(buffer, kHeader) };
+    return {
+        width,
+        height,
+        halves: halves ? new Uint16Array(buffer, kHeader) : null,
+        numbers: halves ? null : new Uint32Array(buffer, kHeader),
+    };
 }
 
 const unpacked = new Map<string, Promise<ReportImage>>();

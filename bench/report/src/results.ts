@@ -69,7 +69,12 @@ export interface Scene {
     width?: number;
     height?: number;
     camera?: { eye?: number[]; target?: number[]; fov_degrees?: number };
-    reference?: { spp?: number; seconds?: number | null; estimated_relmse?: Record<string, number | null>; images?: Record<string, string> | null };
+    reference?: {
+        spp?: number;
+        seconds?: number | null;
+        estimated_relmse?: Record<string, number | null>;
+        images?: Record<string, string> | null;
+    };
     bounds?: { min: [number, number, number]; max: [number, number, number] };
     plan?: { segments?: [number, number, number, number][] } | null;
     probe_sets?: Record<string, ProbeSet>;
@@ -94,9 +99,11 @@ export const kSchema = 2;
 /** The results that stand in this page. Throws a sentence that a person can act on. */
 export function loadResults(): Results {
     const element = document.getElementById("results");
-    if (!element) throw new Error("This page holds no results: it is the empty template. `sconce bench` writes a filled one to report/index.html.");
+    if (!element)
+        throw new Error("This page holds no results: it is the empty template. `sconce bench` writes a filled one to report/index.html.");
     const results = JSON.parse(element.textContent ?? "") as Results;
-    if (results.schema !== kSchema) throw new Error(`These results have schema ${results.schema}, this page reads schema ${kSchema}: run \`sconce bench\` again.`);
+    if (results.schema !== kSchema)
+        throw new Error(`These results have schema ${results.schema}, this page reads schema ${kSchema}: run \`sconce bench\` again.`);
     return results;
 }
 

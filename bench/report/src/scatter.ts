@@ -43,7 +43,10 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         }
         const unit = (of: Figure): string => (of.unit ? `, ${of.unit}` : "");
         title.textContent = `${error.label}${unit(error)} against ${cost.label}${unit(cost)}`;
-        frame.setAttribute("aria-label", `Plot of ${title.textContent}: ${counted(placed.length, "point")}. Arrow keys go from point to point, Enter picks one, plus and minus zoom, 0 shows all.`);
+        frame.setAttribute(
+            "aria-label",
+            `Plot of ${title.textContent}: ${counted(placed.length, "point")}. Arrow keys go from point to point, Enter picks one, plus and minus zoom, 0 shows all.`,
+        );
         const left = shown.length - placed.length;
         note.textContent = left > 0 ? `${left} of ${counted(shown.length, "point")} without a figure here` : "";
     }
@@ -60,7 +63,10 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
     }
     /** Zooms about a place; factor below 1 goes in. */
     function zoomAbout(x: number, y: number, factor: number): void {
-        const about = (range: [number, number], at: number): [number, number] => [at * (range[0] / at) ** factor, at * (range[1] / at) ** factor];
+        const about = (range: [number, number], at: number): [number, number] => [
+            at * (range[0] / at) ** factor,
+            at * (range[1] / at) ** factor,
+        ];
         zoom({ x: about(view.x, x), y: about(view.y, y) });
     }
 
@@ -84,7 +90,13 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
             height: kHeight,
             padding: [8, 10, 0, 0],
             legend: { show: false },
-            cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: true, uni: 8, setScale: true }, bind: { dblclick: () => () => (fit(), null) } },
+            cursor: {
+                x: false,
+                y: false,
+                points: { show: false },
+                drag: { x: true, y: true, uni: 8, setScale: true },
+                bind: { dblclick: () => () => (fit(), null) },
+            },
             scales: { x: { time: false, distr: 3, range: () => view.x }, y: { distr: 3, range: () => view.y } },
             axes: [axis(false), axis(true)],
             series: [{}, { paths: () => null, points: { show: false } }],
@@ -92,13 +104,17 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
                 setScale: [
                     (u) => {
                         const { x, y } = u.scales;
-                        if (x && y && isNumber(x.min) && isNumber(x.max) && isNumber(y.min) && isNumber(y.max)) view = { x: [x.min, x.max], y: [y.min, y.max] };
+                        if (x && y && isNumber(x.min) && isNumber(x.max) && isNumber(y.min) && isNumber(y.max))
+                            view = { x: [x.min, x.max], y: [y.min, y.max] };
                     },
                 ],
                 draw: [draw],
             },
         },
-        [[view.x[0], view.x[1]], [view.y[0], view.y[1]]],
+        [
+            [view.x[0], view.x[1]],
+            [view.y[0], view.y[1]],
+        ],
         frame,
     );
     const over = plot.over;
@@ -133,13 +149,16 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
             ctx.strokeStyle = colour; // each method's own front
             ctx.lineWidth = 1.25 * scale;
             ctx.beginPath();
-            paretoFront(usable.filter((p) => p.item.method === method)).forEach((p, index) => (index ? ctx.lineTo(...at(p)) : ctx.moveTo(...at(p))));
+            paretoFront(usable.filter((p) => p.item.method === method)).forEach((p, index) =>
+                index ? ctx.lineTo(...at(p)) : ctx.moveTo(...at(p)),
+            );
             ctx.stroke();
         }
 
         const paper = colourOf("--paper");
         const ink = colourOf("--ink");
-        for (const pass of [0, 1]) // what stands out is drawn over the rest
+        for (const pass of [0, 1])
+            // what stands out is drawn over the rest
             for (const p of placed) {
                 const lit = p.item === store.hovered || p.item === store.picked;
                 const stands = store.stands(p.item);
@@ -213,7 +232,12 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
             if (!event.ctrlKey && document.activeElement !== frame) return; // then it scrolls the page
             event.preventDefault();
             const area = over.getBoundingClientRect();
-            if (plot) zoomAbout(plot.posToVal(event.clientX - area.left, "x"), plot.posToVal(event.clientY - area.top, "y"), Math.exp(event.deltaY / 500));
+            if (plot)
+                zoomAbout(
+                    plot.posToVal(event.clientX - area.left, "x"),
+                    plot.posToVal(event.clientY - area.top, "y"),
+                    Math.exp(event.deltaY / 500),
+                );
         },
         { passive: false },
     );
@@ -243,7 +267,10 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         hideTooltip();
     });
 
-    store.on(["hover", "pick", "theme"], perFrame(() => plot?.redraw(false, true)));
+    store.on(
+        ["hover", "pick", "theme"],
+        perFrame(() => plot?.redraw(false, true)),
+    );
     store.on(["filter"], () => {
         place();
         plot?.redraw(false, true);
@@ -264,7 +291,11 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
 }
 
 function trimmed(value: number): string {
-    if (value !== 0 && (value < 1e-3 || value >= 1e5)) return value.toExponential(value.toExponential().startsWith("1e") ? 0 : 1).replace("e+", "e").replace(".0e", "e");
+    if (value !== 0 && (value < 1e-3 || value >= 1e5))
+        return value
+            .toExponential(value.toExponential().startsWith("1e") ? 0 : 1)
+            .replace("e+", "e")
+            .replace(".0e", "e");
     return String(Number(value.toPrecision(3)));
 }
 

@@ -31,7 +31,11 @@ export function table<T>(label: string, firstColumns: Column<T>[], firstRows: T[
     let made = new Map<T, HTMLTableRowElement>();
     const headRow = h("tr");
     const body = h("tbody");
-    const element = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, h("table", {}, h("thead", {}, headRow), body));
+    const element = h(
+        "div",
+        { class: "scroll", tabindex: 0, role: "region", "aria-label": label },
+        h("table", {}, h("thead", {}, headRow), body),
+    );
 
     function fillHead(): void {
         headRow.replaceChildren(
@@ -44,7 +48,11 @@ export function table<T>(label: string, firstColumns: Column<T>[], firstRows: T[
                     fillBody();
                     headRow.querySelectorAll("button")[columns.indexOf(column)]?.focus();
                 };
-                return h("th", { scope: "col", "aria-sort": order, class: column.numeric ? "number" : null, title: column.title }, h("button", { type: "button", click: press }, column.head));
+                return h(
+                    "th",
+                    { scope: "col", "aria-sort": order, class: column.numeric ? "number" : null, title: column.title },
+                    h("button", { type: "button", click: press }, column.head),
+                );
             }),
         );
     }
