@@ -40,18 +40,28 @@ const kPrices: [keyof Price, string, string][] = [
     ["trace_ratio", "trace time", "trace time of `to` / trace time of `from`"],
     ["reads_ratio", "reads", "reads a ray of `to` / of `from`"],
     ["memory_ratio", "memory", "memory of `to` / memory of `from`"],
-    ["halving_costs_time", "half the error, time", "the factor on the time when the error is halved by this knob"],
-    ["halving_costs_memory", "half the error, memory", "the factor on the memory when the error is halved by this knob"],
+    ["halving_costs_time", "½ error: time", "the factor on the time when the error is halved by this knob"],
+    ["halving_costs_memory", "½ error: memory", "the factor on the memory when the error is halved by this knob"],
 ];
 
 function errorName(row: { error_key?: string | null }): string {
-    const key = row.error_key ?? "";
+    const key = row.error_key === "wrong_rays" ? "rays.wrong" : (row.error_key ?? "");
     return figures.find((of) => of.key === `error.${key}` || of.key === key || of.key === `rays.${key}`)?.short ?? key;
 }
 
-/** A table with a choice for each property by which its rows can be narrowed down. */
-function filtered<T>(label: string, columns: Column<T>[], rows: T[], properties: [string, (row: T) => string][]): HTMLElement {
-    const grid = table(label, columns, rows);
+/**
+ * A table with a choice for each property by which its rows can be narrowed down.
+ * @param silent  whether a row's cells say nothing without its sentence, which is then shown always
+ */
+function filtered<T extends { sentence?: string }>(
+    label: string,
+    columns: Column<T>[],
+    rows: T[],
+    properties: [string, (row: T) => string][],
+    silent: (row: T) => boolean = () => false,
+): HTMLElement {
+    let inWords = false;
+    const grid = table(label, columns, rows, { below: (row) => (inWords || silent(row) ? (row.sentence ?? "") : "") });
     grid.element.classList.add("words");
     const chosen = properties.map(() => "");
     const count = h("span", { class: "note", role: "status" });
@@ -72,9 +82,10 @@ function filtered<T>(label: string, columns: Column<T>[], rows: T[], properties:
             ),
         ];
     });
-    if (controls.length === 0) return grid.element;
+    const check = h("input", { type: "checkbox", change: () => ((inWords = check.checked), update()) });
+    const words = h("label", { class: "field" }, check, "in words");
     update();
-    return h("div", { class: "stack" }, h("div", { class: "controls" }, ...controls, count), grid.element);
+    return h("div", { class: "stack" }, h("div", { class: "controls" }, ...controls, words, count), grid.element);
 }
 
 export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, store: Store): HTMLElement {
@@ -114,12 +125,6 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
     });
     const present = <T>(rows: T[], columns: Column<T>[]): Column<T>[] =>
         columns.filter((column) => rows.some((row) => column.sortBy(row) !== null));
-    const words = <T extends { sentence?: string }>(): Column<T> => ({
-        head: "in words",
-        sortBy: (row) => row.sentence ?? null,
-        show: (row) => row.sentence ?? "",
-    });
-
     const equal = scene.analysis?.equal ?? [];
     const equalColumns = present(equal, [
         {
@@ -133,7 +138,6 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
         ...kRatios.map(([key, head]) =>
             ratioColumn<Equal>(head, `${head}: ours / theirs; below 1 ours takes or has less`, (row) => row.ratio?.[key], verdict),
         ),
-        words<Equal>(),
     ]);
     const prices = scene.analysis?.prices ?? [];
     const priceColumns = present(prices, [
@@ -142,7 +146,6 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
         pointColumn("from", (row) => row.from),
         pointColumn("to", (row) => row.to),
         ...kPrices.map(([key, head, title]) => ratioColumn<Price>(head, title, (row) => row[key], ratio)),
-        words<Price>(),
     ]);
     const breaks = scene.analysis?.breaks ?? [];
     const none = (what: string): HTMLElement => h("p", { class: "note" }, `This run has no ${what}.`);
@@ -151,11 +154,17 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
         "Ours against theirs",
         h("p", { class: "lead" }, "Ratios are ours / theirs: ▼ below 1 ours takes less or errs less, ▲ above 1 more."),
         equal.length > 0
-            ? filtered("At equal error, probes, time and memory", equalColumns, equal, [
-                  ["At equal", (row) => row.what],
-                  ["Judged by", errorName],
-                  ["Theirs", (row) => row.method ?? byId.get(row.theirs ?? "")?.method ?? ""],
-              ])
+            ? filtered(
+                  "At equal error, probes, time and memory",
+                  equalColumns,
+                  equal,
+                  [
+                      ["At equal", (row) => row.what],
+                      ["Judged by", errorName],
+                      ["Theirs", (row) => row.method ?? byId.get(row.theirs ?? "")?.method ?? ""],
+                  ],
+                  (row) => row.ours === null,
+              )
             : none("pairs to compare"),
         h("h3", {}, "Price list"),
         prices.length > 0

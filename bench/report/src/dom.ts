@@ -100,6 +100,18 @@ export function segments(legend: string, choices: Choice[], chosen: string, chan
     };
 }
 
+export interface Toggle {
+    element: HTMLElement;
+    set(on: boolean): void;
+}
+
+/** Something that is on or off, looking like one of `segments`. */
+export function toggle(label: string, key: string, title: string, changed: (on: boolean) => void): Toggle {
+    const input = h("input", { type: "checkbox", "aria-label": title, change: () => changed(input.checked) });
+    const text = h("span", {}, h("kbd", {}, key), h("span", { class: "clip" }, label));
+    return { element: h("span", { class: "segments" }, h("label", { title }, input, text)), set: (on) => (input.checked = on) };
+}
+
 export function select(label: string, choices: Choice[], chosen: string, changed: (value: string) => void): HTMLElement {
     const control = h("select", { "aria-label": label, change: () => changed(control.value) });
     for (const choice of choices) control.append(h("option", { value: choice.value, title: choice.title }, choice.label));

@@ -20,48 +20,47 @@ export const kLayers: Layer[] = [
     { key: "unresolved", label: "unresolved", colours: false },
 ];
 
-/** Something that can be shown: a point's image, the reference's, or the error between them. */
+/** Something that can be shown: the images of a point, or the reference's. */
 export interface Entry {
     label: string;
     point: Point | null; // null: the reference
-    error: boolean;
     images: Record<string, string>;
 }
 
-/** Ours, then the others, the reference, then the errors in the same order. */
+/** Ours, then the others, then the reference. */
 export function entriesOf(scene: Scene): Entry[] {
     const pictured = points(scene).filter((point) => Object.keys(imagesOf(point)).length > 0);
     pictured.sort((a, b) => Number(b.method === "ours") - Number(a.method === "ours"));
     const several = (method: string): boolean => pictured.filter((point) => point.method === method).length > 1;
     const label = (point: Point): string => (several(point.method) ? `${point.method}, ${nameOf(point)}` : point.method);
-    const shown = pictured.map((point): Entry => ({ label: label(point), point, error: false, images: imagesOf(point) }));
+    const shown = pictured.map((point): Entry => ({ label: label(point), point, images: imagesOf(point) }));
     const truth = imagesOf(scene.reference);
-    if (Object.keys(truth).length === 0) return shown;
-    const reference: Entry = { label: "reference", point: null, error: false, images: truth };
-    return [...shown, reference, ...shown.map((entry): Entry => ({ ...entry, label: `error of ${entry.label}`, error: true }))];
+    return Object.keys(truth).length > 0 ? [...shown, { label: "reference", point: null, images: truth }] : shown;
 }
 
 export interface Loaded {
+    label: string;
     entry: Entry;
     image: ReportImage | null; // null: `problem` says why
-    reference: ReportImage | null; // of an error
+    reference: ReportImage | null; // set: the error against it is shown, not the image
     problem: string;
 }
 
+/** @param truth  set: the error against it is wanted, which colours of points have; everything else is shown as it is */
 export async function load(entry: Entry, layer: Layer, truth: Entry | undefined): Promise<Loaded> {
-    const missing = (problem: string): Loaded => ({ entry, image: null, reference: null, problem });
+    const against = layer.colours && entry.point ? truth : undefined;
+    const label = against ? `error of ${entry.label}` : entry.label;
+    const missing = (problem: string): Loaded => ({ label, entry, image: null, reference: null, problem });
     const file = entry.images[layer.key];
-    if (entry.error && !layer.colours) return missing(`There is no error of ${layer.label}: the reference traces no probes.`);
-    if (!file)
-        return missing(entry.point ? `${entry.label} has no image of ${layer.label}.` : `The reference has no image of ${layer.label}.`);
+    if (!file) return missing(`${entry.point ? entry.label : "The reference"} has no image of ${layer.label}.`);
     try {
         const image = await loadImage(file);
-        if (!entry.error) return { entry, image, reference: null, problem: "" };
-        const truthFile = truth?.images[layer.key];
+        if (!against) return { label, entry, image, reference: null, problem: "" };
+        const truthFile = against.images[layer.key];
         if (!truthFile) return missing(`The reference has no image of ${layer.label}, so there is no error.`);
         const reference = await loadImage(truthFile);
         if (reference.width !== image.width || reference.height !== image.height) return missing("Image and reference differ in size.");
-        return { entry, image, reference, problem: "" };
+        return { label, entry, image, reference, problem: "" };
     } catch (problem) {
         return missing(`Can't show ${file}: ${String(problem)}`);
     }

@@ -56,6 +56,7 @@ export function keysHelp(): HTMLElement {
             ...[
                 ["1–9", "left image"],
                 ["Shift 1–9", "right image"],
+                ["E, Shift E", "error of the left, right image"],
                 ["X", "swap left and right"],
                 ["L", "next layer"],
                 ["V", "divider or all"],

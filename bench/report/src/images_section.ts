@@ -1,6 +1,6 @@
 // Ours, the baseline, the reference and their errors: beside each other with a divider, or all at once, at one place and exposure.
 import { onDrag } from "./drag";
-import { h, perFrame, section, segments, type Segments } from "./dom";
+import { h, perFrame, section, segments, toggle, type Segments } from "./dom";
 import { number } from "./format";
 import {
     autoExposure,
@@ -32,12 +32,12 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         return section("images", "Images", h("p", { class: "note" }, "This scene has no images."));
 
     const truth = entries.find((entry) => !entry.point);
-    const errorStart = entries.findIndex((entry) => entry.error);
     let layer = layers[0] as Layer;
     let left = 0;
     let right = truth ? entries.indexOf(truth) : Math.min(1, entries.length - 1);
     let stops = 0;
     let auto = 1;
+    let errors = { left: false, right: false }; // whether the error is shown in place of the image
     let split = 0.5;
     let all = false;
     let cursor: [number, number] | null = null;
@@ -50,6 +50,10 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     const choices = entries.map((entry, index) => ({ value: String(index), label: entry.label, key: keyOf(index) }));
     const leftChoice: Segments = segments("Left", choices, String(left), (value) => choose("left", Number(value)));
     const rightChoice: Segments = segments("Right", choices, String(right), (value) => choose("right", Number(value)));
+    const leftError = toggle("error", "E", "Error of the left image", (on) => setErrors({ ...errors, left: on }));
+    const rightError = toggle("error", "⇧E", "Error of the right image", (on) => setErrors({ ...errors, right: on }));
+    const leftGroup = h("span", { class: "side" }, leftChoice.element, truth ? leftError.element : null);
+    const rightGroup = h("span", { class: "side" }, rightChoice.element, truth ? rightError.element : null);
     const layerChoice: Segments = segments(
         "Layer",
         layers.map((one) => ({ value: one.key, label: one.label })),
@@ -89,13 +93,14 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     const leftName = h("span", { class: "badge left" });
     const rightName = h("span", { class: "badge right" });
     const problem = h("p", { class: "problem", role: "status" });
+    const captions = entries.map(() => h("span", {}));
     const stage = h("div", { class: "stage" });
     const values = h("dl", { class: "values", "aria-live": "polite" });
     const legend = h("div", { class: "colours" });
     const viewer = h(
         "div",
         { class: "viewer" },
-        h("div", { class: "controls" }, leftChoice.element, rightChoice.element, layerChoice.element, modeChoice.element),
+        h("div", { class: "controls" }, leftGroup, rightGroup, layerChoice.element, modeChoice.element),
         h(
             "div",
             { class: "controls" },
@@ -129,6 +134,12 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         rightChoice.set(String(right));
         void reload();
     }
+    function setErrors(next: typeof errors): void {
+        errors = next;
+        leftError.set(errors.left);
+        rightError.set(errors.right);
+        void reload();
+    }
     function setLayer(key: string): void {
         layer = layers.find((one) => one.key === key) ?? layer;
         layerChoice.set(layer.key);
@@ -137,7 +148,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     function setAll(value: boolean): void {
         all = value;
         modeChoice.set(all ? "all" : "divider");
-        leftChoice.element.hidden = rightChoice.element.hidden = all;
+        leftChoice.element.hidden = rightGroup.hidden = all;
         layOut();
         void reload();
     }
@@ -182,9 +193,10 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     let turn = 0;
     async function reload(): Promise<void> {
         const mine = ++turn;
-        const wanted = all ? entries : [entries[left] as Entry, entries[right] as Entry];
-        const truthLoaded = truth && layer.colours ? await load(truth, layer, truth) : null;
-        const loaded = await Promise.all(wanted.map((entry) => load(entry, layer, truth)));
+        const one = (index: number, error: boolean): Promise<Loaded> => load(entries[index] as Entry, layer, error ? truth : undefined);
+        const wanted = all ? entries.map((_, index) => one(index, errors.left)) : [one(left, errors.left), one(right, errors.right)];
+        const truthLoaded = truth && layer.colours ? await load(truth, layer, undefined) : null;
+        const loaded = await Promise.all(wanted);
         if (mine !== turn) return; // something else was chosen meanwhile
         const base = truthLoaded?.image ?? loaded.find((one) => one.image?.halves)?.image;
         auto = base && layer.colours ? autoExposure(base) : 1;
@@ -198,8 +210,8 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         exposureText.textContent = `${stops >= 0 ? "+" : "−"}${Math.abs(stops).toFixed(2)} EV`;
         exposureText.title = `radiance × ${number(auto * 2 ** stops)}`;
         problem.textContent = [...new Set(shown.map((one) => one.loaded.problem).filter(Boolean))].join(" ");
-        const errors = shown.some((one) => one.loaded.entry.error && one.loaded.image);
-        legend.replaceChildren(...legendOf(layer, images, how.top, errors));
+        const anyError = shown.some((one) => one.loaded.reference);
+        legend.replaceChildren(...legendOf(layer, images, how.top, anyError));
         redraw();
     }
     const drawPanes = perFrame(() => {
@@ -210,9 +222,10 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         drawPanes();
         handle.style.left = `${100 * split}%`;
         handle.setAttribute("aria-valuenow", String(Math.round(100 * split)));
-        handle.setAttribute("aria-valuetext", `${Math.round(100 * split)} % ${entries[left]?.label ?? ""}`);
-        leftName.textContent = entries[left]?.label ?? "";
-        rightName.textContent = entries[right]?.label ?? "";
+        handle.setAttribute("aria-valuetext", `${Math.round(100 * split)} % ${shown[0]?.loaded.label ?? ""}`);
+        leftName.textContent = shown[0]?.loaded.label ?? "";
+        captions.forEach((caption, index) => (caption.textContent = shown[index]?.loaded.label ?? ""));
+        rightName.textContent = shown[1]?.loaded.label ?? "";
         zoomText.textContent = panes[0] ? `${Math.round(100 * panes[0].zoomOf(view))} %` : "";
         drawValues();
     }
@@ -223,7 +236,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         ];
         for (const one of cursor ? shown : [])
             rows.push(
-                h("dt", { title: one.loaded.entry.label }, one.loaded.entry.label),
+                h("dt", { title: one.loaded.label }, one.loaded.label),
                 h("dd", {}, cursor ? pixelText(one.loaded, layer, cursor[0], cursor[1], probeText) : ""),
             );
         values.replaceChildren(...rows);
@@ -246,7 +259,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
                         "figure",
                         {},
                         pane.canvas,
-                        h("figcaption", { class: "clip" }, h("kbd", {}, keyOf(index) ?? ""), ` ${entries[index]?.label ?? ""}`),
+                        h("figcaption", { class: "clip" }, h("kbd", {}, keyOf(index) ?? ""), " ", captions[index] as HTMLElement),
                     ),
                 ),
             );
@@ -311,12 +324,17 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     });
     viewer.addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.altKey || event.metaKey || event.defaultPrevented) return;
+        const shift = event.shiftKey;
         const digit = /^Digit([1-9])$/.exec(event.code)?.[1];
         const actions: Record<string, () => void> = {
             x: () => {
                 const before = left;
                 choose("left", right);
                 choose("right", before);
+                setErrors({ left: errors.right, right: errors.left });
+            },
+            e: () => {
+                if (truth) setErrors(shift ? { ...errors, right: !errors.right } : { ...errors, left: !errors.left });
             },
             l: () => setLayer(layers[(layers.indexOf(layer) + 1) % layers.length]?.key ?? layer.key),
             v: () => setAll(!all),
@@ -327,13 +345,13 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
             "-": () => zoomBy(1 / 1.5),
             "0": () => whole(),
         };
-        const action = digit ? () => choose(event.shiftKey ? "right" : "left", Number(digit) - 1) : actions[event.key.toLowerCase()];
+        const action = digit ? () => choose(shift ? "right" : "left", Number(digit) - 1) : actions[event.key.toLowerCase()];
         if (!action) return;
         event.preventDefault();
         action();
     });
     store.on(["show"], () => {
-        const index = entries.findIndex((entry) => entry.point === store.shown && !entry.error);
+        const index = entries.findIndex((entry) => entry.point === store.shown);
         if (index >= 0) choose("left", index);
         viewer.scrollIntoView({ block: "start" });
     });
@@ -351,7 +369,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
     return section(
         "images",
         "Images",
-        errorStart < 0 ? h("p", { class: "note" }, "There is no reference image, so no error can be shown.") : null,
+        truth ? null : h("p", { class: "note" }, "There is no reference image, so no error can be shown."),
         viewer,
     );
 }

@@ -188,7 +188,7 @@ export function planSection(scene: Scene): HTMLElement {
                     list.open = true;
                     rows.rowOf(of[probe] as Probe)?.scrollIntoView({ block: "nearest" });
                 });
-                const rows = table(`Probes of ${name}`, probeColumns(set), of, (probe) => drawn.mark(of.indexOf(probe)));
+                const rows = table(`Probes of ${name}`, probeColumns(set), of, { picked: (probe) => drawn.mark(of.indexOf(probe)) });
                 rows.element.classList.add("short");
                 const list = h("details", {}, h("summary", {}, `List of ${counted(of.length, "probe")}`), rows.element);
                 const facts = [

@@ -80,7 +80,7 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
         settings: () => settingColumns(all),
     };
     const columnsOf = (group: string): Column<Point>[] => [...first, ...(groups[group]?.() ?? [])];
-    const grid = table("All points", columnsOf("overview"), all, (point) => store.pick(point));
+    const grid = table("All points", columnsOf("overview"), all, { picked: (point) => store.pick(point) });
     grid.element.classList.add("tall");
 
     const filter = h("input", { type: "search", placeholder: "e.g. ours probes", size: 18, input: () => update() });

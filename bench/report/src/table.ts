@@ -22,8 +22,13 @@ function compare(a: number | string | null, b: number | string | null, way: numb
     return way * String(a).localeCompare(String(b), "en", { numeric: true });
 }
 
-/** @param label  for screen readers    @param picked  called with the row that is clicked or entered; without it rows are not to be picked */
-export function table<T>(label: string, firstColumns: Column<T>[], firstRows: T[], picked?: (row: T) => void): Table<T> {
+export interface TableOptions<T> {
+    picked?: (row: T) => void; // called with a row that is clicked
+    below?: (row: T) => string; // a line under each row
+}
+
+/** @param label  for screen readers */
+export function table<T>(label: string, firstColumns: Column<T>[], firstRows: T[], { picked, below }: TableOptions<T> = {}): Table<T> {
     let columns = firstColumns;
     let rows = firstRows;
     let sorted: Column<T> | undefined;
@@ -61,14 +66,17 @@ export function table<T>(label: string, firstColumns: Column<T>[], firstRows: T[
         const ordered = by ? [...rows].sort((a, b) => compare(by.sortBy(a), by.sortBy(b), way)) : rows;
         made = new Map();
         body.replaceChildren(
-            ...ordered.map((row) => {
+            ...ordered.flatMap((row) => {
                 const cells = columns.map((column, index) => {
                     const content = column.show(row);
                     return index === 0 ? h("th", { scope: "row" }, content) : h("td", { class: column.numeric ? "number" : null }, content);
                 });
                 const line = h("tr", picked ? { class: "pickable", click: () => picked(row) } : {}, ...cells);
                 made.set(row, line);
-                return line;
+                const text = below?.(row);
+                if (!text) return [line];
+                line.classList.add("pair");
+                return [line, h("tr", { class: "said" }, h("td", { colspan: columns.length }, text))];
             }),
         );
     }
