@@ -25,7 +25,7 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
             glyph(styles.get(method)),
             h("span", { class: "clip" }, method),
         );
-        store.on(["filter"], () => button.setAttribute("aria-pressed", String(!store.hidden.has(method))));
+        store.on(["methods"], () => button.setAttribute("aria-pressed", String(!store.hidden.has(method))));
         legend.append(button);
     }
     const knobs = [...new Set(points(scene).map((point) => point.knob))].filter((knob) => knob && knob !== "default");

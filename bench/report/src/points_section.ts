@@ -101,7 +101,7 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
         grid.element.querySelector("tr.picked")?.classList.remove("picked");
         if (store.picked) grid.rowOf(store.picked)?.classList.add("picked");
     };
-    store.on(["filter"], update);
+    store.on(["methods"], update);
     store.on(["pick"], mark);
     update();
 

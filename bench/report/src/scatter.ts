@@ -79,7 +79,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
         size: rotated ? 56 : 34,
         grid: { stroke: () => colourOf("--line"), width: 1 },
         ticks: { stroke: () => colourOf("--line"), width: 1, size: 4 },
-        splits: (_: uPlot, __: number, low: number, high: number) => logTicks(low, high, rotated ? 8 : 6),
+        splits: (_: uPlot, __: number, low: number, high: number) => logTicks(low, high, 8),
         filter: (_: uPlot, splits: number[]) => splits,
         values: (_: uPlot, splits: number[]) => splits.map((value) => trimmed(value)),
     });
@@ -268,12 +268,12 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
     });
 
     store.on(
-        ["hover", "pick", "theme"],
+        ["hover", "pick", "knob", "theme"],
         perFrame(() => plot?.redraw(false, true)),
     );
-    store.on(["filter"], () => {
+    store.on(["methods"], () => {
         place();
-        plot?.redraw(false, true);
+        fit();
     });
     new ResizeObserver(([entry]) => {
         const width = Math.floor(entry?.contentRect.width ?? 0);

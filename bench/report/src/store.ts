@@ -1,7 +1,7 @@
 // What the parts of a scene's page share: the point under the pointer, the one that was picked, what is hidden.
 import type { Point } from "./results";
 
-export type Change = "hover" | "pick" | "filter" | "theme" | "show";
+export type Change = "hover" | "pick" | "methods" | "knob" | "theme" | "show";
 
 export class Store {
     hovered: Point | null = null;
@@ -33,11 +33,11 @@ export class Store {
     }
     toggle(method: string): void {
         if (!this.hidden.delete(method)) this.hidden.add(method);
-        this.tell("filter");
+        this.tell("methods");
     }
     highlight(knob: string): void {
         this.knob = knob;
-        this.tell("filter");
+        this.tell("knob");
     }
     visible(point: Point): boolean {
         return !this.hidden.has(point.method);

@@ -17,7 +17,7 @@ export function logTicks(low: number, high: number, most = 8): number[] {
 
 /** Even steps of 1, 2 or 5 times a power of ten. */
 export function evenTicks(low: number, high: number): number[] {
-    const raw = (high - low) / 5;
+    const raw = (high - low) / 7;
     const power = 10 ** Math.floor(Math.log10(raw));
     const step = [1, 2, 5, 10].map((factor) => factor * power).find((size) => size >= raw) as number;
     const ticks: number[] = [];
