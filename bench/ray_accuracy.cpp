@@ -13,10 +13,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bench/scene_rays.h"
 #include "bench/traced_method.h"
-#include "placement/free_space.h"
-#include "placement/random.h"
-#include "placement/visibility.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
 
@@ -24,10 +22,6 @@ namespace sconce
 {
 namespace
 {
-
-constexpr size_t kLeastViewpoints =
-    64; // cameras and interior points the rays' surfaces are seen from: with 8, shares move by a point with the seed
-constexpr size_t kLeastInterior = 6; // of them in the reachable space
 
 struct Options
 {
@@ -55,21 +49,6 @@ struct Row
     Speed speed;
 };
 
-Result<RaySet> makeRays(const Scene& scene, const RayScene& truth, const Options& options)
-{
-    auto visibility = Visibility::build(scene);
-    if (!visibility) return visibility.error();
-    auto space = findFreeSpace(scene, *visibility, {});
-    if (!space) return space.error();
-    const auto interior = size_t(std::ranges::count_if(scene.cameras, [&](const Camera& camera) { return space->contains(camera.eye); }));
-    const size_t wanted =
-        std::max(kLeastViewpoints - std::min(kLeastViewpoints, scene.cameras.size()), kLeastInterior - std::min(kLeastInterior, interior));
-    RandomStream random(options.seed, 77);
-    std::vector<vec3> points;
-    while (points.size() < wanted) points.push_back(space->randomPoint(random));
-    return glossyRays(truth, scene.cameras, points, {.count = options.rays, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = options.seed});
-}
-
 /// Whether two answers are one: the same status, probe and counts, and t within 2e-5.
 bool same(const gpu::RayHit& a, const gpu::RayHit& b)
 {
@@ -86,11 +65,7 @@ Result<Row> score(TracedMethod& method, const RaySet& set, bool cpu)
     const std::vector<gpu::Ray> rays = method.raysOf(set);
     std::vector<gpu::RayHit> hits(rays.size());
     if (auto status = method.trace(rays, hits); !status) return status.error();
-    std::vector<TracedRay> traced;
-    traced.reserve(hits.size());
-    for (const gpu::RayHit& hit : hits)
-        traced.push_back({TraceStatus(hit.status), hit.t, uint32_t(hit.handoffs), uint32_t(hit.distanceReads), uint32_t(hit.indexReads)});
-    row.score = scoreTraces(set, traced);
+    row.score = scoreTraces(set, tracedRays(hits));
     if (!cpu) return row;
     std::vector<gpu::RayHit> again(rays.size());
     method.traceOnCpu(rays, again);
@@ -245,7 +220,7 @@ Status run(const Options& options)
     if (!scene) return scene.error();
     auto truth = RayScene::create(*scene);
     if (!truth) return truth.error();
-    auto set = makeRays(*scene, *truth, options);
+    auto set = sceneRays(*scene, *truth, options.rays, options.seed);
     if (!set) return set.error();
     auto device = OwnDevice::create();
     if (!device) return device.error();

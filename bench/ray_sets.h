@@ -5,32 +5,11 @@
 #include <vector>
 
 #include "bench/ray_scene.h"
+#include "bench/trace_score.h"
 #include "scene/result.h"
 
 namespace sconce
 {
-
-struct RayTruth
-{
-    bool hit = false;
-    float t = 0.0f; // metres; 0 when nothing is hit
-    vec3 position{0.0f};
-    vec3 normal{0.0f}; // geometric, on the ray's side
-    uint32_t triangle = 0;
-};
-
-/// Rays with what they really hit.
-struct RaySet
-{
-    std::vector<vec3> origins;      // [n] metres, 1e-4 of the diagonal off the surface
-    std::vector<vec3> directions;   // [n] unit
-    std::vector<vec3> normals;      // [n] geometric normal of the surface they leave, on the ray's side; 0 when it is not known
-    std::vector<float> startCosine; // [n] with the surface they leave; below 0.05 (3 degrees) is a grazing start
-    std::vector<RayTruth> truth;    // [n]
-    float diagonal = 0.0f;          // of the scene, metres
-
-    size_t size() const { return origins.size(); }
-};
 
 struct GlossyRaySettings
 {
@@ -49,55 +28,5 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
 
 /// A set from given rays, with Embree's truth; directions must be unit. startCosine is 1.
 RaySet raySetFrom(const RayScene& rays, std::span<const vec3> origins, std::span<const vec3> directions);
-
-enum class TraceStatus : uint32_t
-{
-    miss,
-    hit,
-    unknown
-};
-
-/// What a tracer said of one ray.
-struct TracedRay
-{
-    TraceStatus status = TraceStatus::unknown;
-    float t = 0.0f; // metres, of a hit
-    uint32_t handoffs = 0;
-    uint32_t distanceReads = 0;
-    uint32_t indexReads = 0;
-};
-
-/// Every ray is exactly one of right, false, leak, unresolved.
-enum class TraceVerdict
-{
-    right,     // a hit within 1 % of the diagonal of the true one, or a true miss
-    falseHit,  // a hit where the truth goes on: nearer by more than 1 % of the diagonal
-    leak,      // passes through: farther by more than 1 %, or a miss where the truth hits
-    unresolved // UNKNOWN, or a hit at a distance that is not a number
-};
-TraceVerdict judge(const RayTruth& truth, const TracedRay& traced, float diagonal);
-
-struct Spread
-{
-    double mean = 0.0;
-    uint32_t p95 = 0; // nearest rank
-    uint32_t max = 0;
-};
-
-struct TraceScore // shares of all rays, [0,1]
-{
-    size_t rays = 0;
-    double right1 = 0.0;
-    double right02 = 0.0; // within 0.2 % of the diagonal, or a true miss; part of right1
-    double falseHit = 0.0;
-    double leak = 0.0;
-    double unresolved = 0.0;
-    Spread handoffs;
-    Spread distanceReads;
-    Spread indexReads;
-};
-
-/// Scores a tracer. Misuse: spans of different length assert. Share and spreads of an empty set are 0.
-TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced);
 
 } // namespace sconce

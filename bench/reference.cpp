@@ -96,7 +96,7 @@ struct Frame
     const PathTracer& tracer;
     Pinhole pinhole;
     ImageSet images;
-    std::vector<double> error; // [pixel] relative squared error of the mean, from the two halves of the samples
+    std::vector<glm::dvec3> error; // [pixel] relative squared error of the means of beauty, diffuse, glossy, by halves of the samples
     std::atomic<uint64_t> nonFinite{0};
 
     enum : size_t
@@ -117,11 +117,12 @@ struct Frame
         images.width = s.width;
         images.height = s.height;
         for (const char* name : {"beauty", "direct", "diffuse_indirect", "glossy_indirect"}) images.add(name, 3);
+        error.resize(images.pixelCount());
+        if (!settings.guides) return;
         images.add("depth", 1);
         images.add("normal", 3);
         images.add("albedo", 3);
         images.add("roughness", 1);
-        error.resize(images.pixelCount());
     }
 
     void store(size_t layer, size_t pixel, vec3 value)
@@ -145,8 +146,8 @@ struct Frame
     {
         const size_t pixel = size_t(y) * settings.width + x;
         const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
-        guides(pixel, centre);
-        glm::dvec3 sums[3]{}, halves[2]{};
+        if (settings.guides) guides(pixel, centre);
+        glm::dvec3 sums[3]{}, halves[3][2]{}; // of beauty, diffuse, glossy
         for (uint32_t i = 0; i < settings.samples; ++i)
         {
             if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
@@ -164,7 +165,9 @@ struct Frame
             sums[0] += path.direct;
             sums[1] += path.diffuse;
             sums[2] += path.glossy;
-            halves[i & 1] += path.direct + path.diffuse + path.glossy;
+            halves[0][i & 1] += path.direct + path.diffuse + path.glossy;
+            halves[1][i & 1] += path.diffuse;
+            halves[2][i & 1] += path.glossy;
         }
         const double count = settings.samples;
         const vec3 parts[3] = {vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count)};
@@ -172,9 +175,12 @@ struct Frame
         store(beauty, pixel, parts[0] + parts[1] + parts[2]);
         if (!pace.goOn((settings.samples - 1) % Pace::kStep + 1)) return false; // the paths since the last question
         if (settings.samples < 2) return true;
-        const glm::dvec3 a = halves[0] / double((settings.samples + 1) / 2), b = halves[1] / double(settings.samples / 2);
-        const glm::dvec3 mean = 0.5 * (a + b), off = 0.5 * (a - b); // E[off^2] is the variance of the mean
-        error[pixel] = glm::dot(off * off / (mean * mean + 0.01), glm::dvec3(1.0 / 3.0));
+        for (int part = 0; part < 3; ++part)
+        {
+            const glm::dvec3 a = halves[part][0] / double((settings.samples + 1) / 2), b = halves[part][1] / double(settings.samples / 2);
+            const glm::dvec3 mean = 0.5 * (a + b), off = 0.5 * (a - b); // E[off^2] is the variance of the mean
+            error[pixel][part] = glm::dot(off * off / (mean * mean + 0.01), glm::dvec3(1.0 / 3.0));
+        }
         return true;
     }
 };
@@ -187,8 +193,14 @@ Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& s
     if (std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
     Result<RayScene> rays = RayScene::create(scene);
     if (!rays) return rays.error();
-    const PathTracer tracer(*rays, settings.roughness, settings.bounces);
-    Frame frame(settings, *rays, tracer);
+    return renderReference(*rays, settings, progress);
+}
+
+Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress)
+{
+    if (Status fine = check(settings); !fine) return fine.error();
+    const PathTracer tracer(rays, settings.roughness, settings.bounces);
+    Frame frame(settings, rays, tracer);
 
     tbb::task_group_context context;
     Pace pace(progress, static_cast<double>(frame.images.pixelCount()) * settings.samples, context);
@@ -206,10 +218,13 @@ Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& s
         return Error{ErrorCode::cancelled, "the reference picture was cancelled; nothing was kept"};
 
     Reference result;
-    double sum = 0.0;
-    for (double e : frame.error) sum += e; // in pixel order: the same for any number of threads
-    result.estimatedRelMse =
-        settings.samples < 2 ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(frame.images.pixelCount());
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& e : frame.error) sum += e; // in pixel order: the same for any number of threads
+    sum /= static_cast<double>(frame.images.pixelCount());
+    if (settings.samples < 2) sum = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    result.estimatedRelMse = sum[0];
+    result.estimatedRelMseDiffuse = sum[1];
+    result.estimatedRelMseGlossy = sum[2];
     result.images = std::move(frame.images);
     result.nonFinitePaths = frame.nonFinite.load();
     return result;

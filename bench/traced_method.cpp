@@ -92,6 +92,15 @@ Times timesOf(std::vector<double> milliseconds)
     return {rank(0.05), rank(0.5), rank(0.95)};
 }
 
+std::vector<TracedRay> tracedRays(std::span<const gpu::RayHit> hits)
+{
+    std::vector<TracedRay> traced;
+    traced.reserve(hits.size());
+    for (const gpu::RayHit& hit : hits)
+        traced.push_back({TraceStatus(hit.status), hit.t, uint32_t(hit.handoffs), uint32_t(hit.distanceReads), uint32_t(hit.indexReads)});
+    return traced;
+}
+
 std::vector<uint32_t> shuffledOrder(size_t count, uint64_t seed)
 {
     std::vector<uint32_t> order(count);
@@ -101,33 +110,21 @@ std::vector<uint32_t> shuffledOrder(size_t count, uint64_t seed)
     return order;
 }
 
-Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::string& what)
+Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData field, const Tracer& how, std::string label)
 {
-    auto spelled = parse(what);
-    if (!spelled) return spelled.error();
+    if (!how.opponent && field.info.chart != gpu::kChartCube)
+        return Error{ErrorCode::badInput, "Tracer ours needs cube probes, these are octahedral. Bake with --chart cube."};
     std::unique_ptr<TracedMethod> made(new TracedMethod(gpu));
-    made->path = spelled->file;
-    if (auto status = setKnobs(made->quality.trace, spelled->knobs); !status) return status.error();
-    auto data = loadField(spelled->file);
+    made->label = std::move(label);
+    made->how = how;
+    Result<FieldData> data = std::move(field);
+    if (how.opponent) data = baselineField(std::move(*data), *how.opponent, how.lowFactor);
     if (!data) return data.error();
-    const bool octahedral = data->info.chart == gpu::kChartOctahedral;
-    if (!spelled->tracer.empty())
-        made->opponent = baselineNamed(spelled->tracer);
-    else if (octahedral)
-        made->opponent = data->info.gridX != 0 ? Baseline::b0Plus : Baseline::b0PlusOctree;
-    if (!made->opponent && octahedral)
-        return Error{ErrorCode::badInput,
-                     "Tracer ours needs cube probes; '" + spelled->file + "' has octahedral ones. Bake with --chart cube."};
-    made->label = made->opponent ? std::string(baselineName(*made->opponent)) : "ours";
-    if (!spelled->knobs.empty()) made->label.append("/").append(spelled->knobs);
-    if (spelled->lowFactor) made->label.append("/").append(std::to_string(spelled->lowFactor));
-    if (made->opponent) data = baselineField(std::move(*data), *made->opponent, spelled->lowFactor);
-    if (!data) return Error{data.error().code, "'" + spelled->file + "': " + data.error().message};
     made->field = std::move(*data);
-    auto onDevice = LightField::create(gpu, made->field, made->quality);
+    auto onDevice = LightField::create(gpu, made->field, how.quality);
     if (!onDevice) return onDevice.error();
     made->onDevice.emplace(std::move(*onDevice));
-    auto tracer = RayTracer::create(gpu, *made->onDevice, made->opponent ? traceRaysPass(*made->opponent) : Spirv());
+    auto tracer = RayTracer::create(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : Spirv());
     if (!tracer) return tracer.error();
     made->tracer.emplace(std::move(*tracer));
     auto timer = GpuTimer::create(gpu, 1);
@@ -136,10 +133,32 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
     return made;
 }
 
+Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::string& what)
+{
+    auto spelled = parse(what);
+    if (!spelled) return spelled.error();
+    Tracer how;
+    how.lowFactor = spelled->lowFactor;
+    if (auto status = setKnobs(how.quality.trace, spelled->knobs); !status) return status.error();
+    auto data = loadField(spelled->file);
+    if (!data) return data.error();
+    if (!spelled->tracer.empty())
+        how.opponent = baselineNamed(spelled->tracer);
+    else if (data->info.chart == gpu::kChartOctahedral)
+        how.opponent = data->info.gridX != 0 ? Baseline::b0Plus : Baseline::b0PlusOctree;
+    std::string label = how.opponent ? std::string(baselineName(*how.opponent)) : "ours";
+    if (!spelled->knobs.empty()) label.append("/").append(spelled->knobs);
+    if (spelled->lowFactor) label.append("/").append(std::to_string(spelled->lowFactor));
+    auto made = create(gpu, std::move(*data), how, std::move(label));
+    if (!made) return Error{made.error().code, "'" + spelled->file + "': " + made.error().message};
+    (*made)->path = spelled->file;
+    return made;
+}
+
 double TracedMethod::traceMebibytes() const
 {
     uint32_t words = field.info.wordsPerProbe;
-    if (!opponent && quality.trace.farBounds == 0) // they are there, and not read
+    if (!how.opponent && how.quality.trace.farBounds == 0) // they are there, and not read
         words = 6 * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
     return double(words) * sizeof(uint32_t) / kMebibyte;
 }
@@ -151,24 +170,31 @@ double TracedMethod::radianceMebibytes() const
 
 std::vector<gpu::Ray> TracedMethod::raysOf(const RaySet& set) const
 {
-    const float offset = opponent ? baselineOffset(*opponent) : 0.0f;
+    const float offset = how.opponent ? baselineOffset(*how.opponent) : 0.0f;
     std::vector<gpu::Ray> rays(set.size());
     for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + offset * set.normals[i], set.directions[i]};
     return rays;
 }
 
+Result<TraceScore> TracedMethod::score(const RaySet& set)
+{
+    std::vector<gpu::RayHit> hits(set.size());
+    if (auto status = trace(raysOf(set), hits); !status) return status.error();
+    return scoreTraces(set, tracedRays(hits));
+}
+
 void TracedMethod::traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) const
 {
-    if (opponent)
+    if (how.opponent)
     {
-        traceBaselineOnCpu(field, *opponent, rays, hits);
+        traceBaselineOnCpu(field, *how.opponent, rays, hits);
         return;
     }
     constexpr size_t kBatch = 1024;
     parallelFor((rays.size() + kBatch - 1) / kBatch,
                 [&](size_t batch)
                 {
-                    twin::LightFieldTwin<float> text(field, quality.trace);
+                    twin::LightFieldTwin<float> text(field, how.quality.trace);
                     for (size_t i = batch * kBatch; i < std::min(rays.size(), (batch + 1) * kBatch); ++i)
                         hits[i] = text.queryRay(rays[i].origin, rays[i].direction);
                 });

@@ -250,6 +250,11 @@ void SceneOptions::add(CLI::App* command)
     command->add_option("SCENE", name, "A .gltf or .glb file, or the name of a built-in scene (see `sconce scenes`)")
         ->required()
         ->type_name("");
+    addLight(command);
+}
+
+void SceneOptions::addLight(CLI::App* command)
+{
     command
         ->add_option_function<std::string>(
             "--sun",

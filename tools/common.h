@@ -85,6 +85,7 @@ struct SceneOptions
     std::optional<vec3> sunDirection, sunIrradiance, sky;
 
     void add(CLI::App* command);
+    void addLight(CLI::App* command); // --sun and --sky alone
     /// The scene with its light overridden; a scene without any light gets the default sun and sky. Notes its warnings.
     Result<Scene> load(const Context& context) const;
 };
@@ -126,6 +127,7 @@ void addFieldCommands(CLI::App& app, Context& context);
 void addRenderCommand(CLI::App& app, Context& context);
 void addTraceCommand(CLI::App& app, Context& context);
 void addReferenceCommands(CLI::App& app, Context& context);
+void addBenchCommand(CLI::App& app, Context& context);
 void addDoctorCommand(CLI::App& app, Context& context);
 
 } // namespace sconce::tools

@@ -21,6 +21,7 @@ int main(int argc, char** argv)
     addRenderCommand(app, context);
     addTraceCommand(app, context);
     addReferenceCommands(app, context);
+    addBenchCommand(app, context);
     addDoctorCommand(app, context);
     try
     {

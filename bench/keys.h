@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+/// 16 hexadecimal digits that tell two settings apart: what cached files are named by (XXH3, 64 bits, of the text).
+std::string keyOf(const nlohmann::ordered_json& json);
+
+/// The same of everything in a scene that light depends on: triangles, materials, images, lights, sky; not its cameras or its name.
+std::string keyOf(const Scene& scene);
+
+} // namespace sconce
