@@ -31,11 +31,15 @@ class Planner
 public:
     explicit Planner(const PlanSettings& planSettings) : plan(planSettings) {}
 
-    void addDefault(const PointSettings& settings) { points.push_back({settings.method + "/default", "default", "", settings}); }
+    void addDefault(const PointSettings& settings)
+    {
+        if (wants(settings)) points.push_back({settings.method + "/default", "default", "", settings});
+    }
 
     /// Nothing where the value is the default's.
     void addVaried(const PointSettings& base, const Knob& knob, const std::string& value)
     {
+        if (!wants(base)) return;
         if (!plan.knobs.empty() && std::ranges::find(plan.knobs, knob.name) == plan.knobs.end()) return;
         PlannedPoint point{base.method + "/" + std::string(knob.name) + "=" + value, std::string(knob.name), value, base};
         knob.set(point.settings, value);
@@ -53,6 +57,11 @@ public:
     std::vector<PlannedPoint> points;
 
 private:
+    bool wants(const PointSettings& settings) const
+    {
+        return plan.methods.empty() || std::ranges::find(plan.methods, settings.method) != plan.methods.end();
+    }
+
     const PlanSettings& plan;
 };
 

@@ -146,8 +146,8 @@ Result<Json> readResults(const std::filesystem::path& file)
     if (!stream) return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read; give the results.json of a bench."};
     Json json = Json::parse(stream, nullptr, false);
     if (json.is_discarded() || !json.is_object() || json.value("schema", 0) != kSchema || !json.contains("scenes"))
-        return Error{ErrorCode::badInput,
-                     "File '" + file.string() + "' is no results.json of schema " + std::to_string(kSchema) + "; run `sconce bench` again."};
+        return Error{ErrorCode::badInput, "File '" + file.string() + "' is no results.json of schema " + std::to_string(kSchema) +
+                                              "; run `sconce bench` again."};
     return json;
 }
 

@@ -10,6 +10,7 @@
 #include "bench/keys.h"
 #include "bench/metrics.h"
 #include "bench/picture_files.h"
+#include "bench/point_json.h"
 #include "bench/scene_rays.h"
 #include "runtime/bake.h"
 #include "runtime/field_space.h"
@@ -25,9 +26,7 @@ namespace
 constexpr uint32_t kTimerScopes = 32;
 constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
 constexpr double kWrongRelMse = 1.0; // of beauty: as far from the truth as a black picture
-constexpr double kWrongRays = 0.5;   // right within 1 %: fewer are no answer
 constexpr uint64_t kPathSeed = 1000; // the path tracer's paths are not the reference's
-constexpr size_t kMostSegments = 20000;
 
 double secondsNow()
 {
@@ -42,92 +41,12 @@ double cpuSeconds() // of all threads
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-Json toJson(vec3 v)
-{
-    return Json::array({v.x, v.y, v.z});
-}
-
-/// Null where it isn't a number, which JSON has no word for.
-Json number(double value)
-{
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 std::optional<Json> readJson(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
     if (!stream) return {};
     Json json = Json::parse(stream, nullptr, false);
     if (json.is_discarded()) return {}; // not ours, or damaged: measured again
-    return json;
-}
-
-Json bytesJson(const FieldBytes& bytes)
-{
-    return {{"total", bytes.total()},     {"distance", bytes.distance},     {"normals", bytes.normals},
-            {"radiance", bytes.radiance}, {"irradiance", bytes.irradiance}, {"index", bytes.index}};
-}
-
-Json raysJson(const TraceScore& score)
-{
-    return {{"count", score.rays},
-            {"right_1", score.right1},
-            {"right_02", score.right02},
-            {"false", score.falseHit},
-            {"leak", score.leak},
-            {"unresolved", score.unresolved},
-            {"reads_mean", score.distanceReads.mean},
-            {"reads_p95", score.distanceReads.p95},
-            {"reads_max", score.distanceReads.max},
-            {"index_reads_mean", score.indexReads.mean},
-            {"handoffs_mean", score.handoffs.mean}};
-}
-
-double meanSquare(std::span<const float> values)
-{
-    double sum = 0.0;
-    for (const float value : values) sum += double(value) * value;
-    return sum / double(values.size());
-}
-
-/// A sentence when the picture or the rays are of no use, else null.
-/// @param black  the MSE of a black picture
-Json wrongness(const Json& point, double black)
-{
-    const Json& error = point["error"]["beauty"]["mse"];
-    if (error.is_null()) return "The picture has pixels that are not finite.";
-    if (error.get<double>() >= black)
-        return "The picture is wrong beyond use: its MSE is " + error.dump() + ", that of a black one " + Json(black).dump() + ".";
-    if (point.contains("rays") && point["rays"]["right_1"].get<double>() < kWrongRays)
-        return "More than half of the rays are answered wrongly: " + point["rays"]["right_1"].dump() + " are right.";
-    return nullptr;
-}
-
-/// Section of the triangles at a height, [x0, z0, x1, z1] each; of too many, the longest.
-Json sectionAt(const Scene& scene, float height)
-{
-    std::vector<glm::vec4> segments;
-    for (const uvec3& triangle : scene.triangles)
-    {
-        vec2 ends[2];
-        int found = 0;
-        for (int i = 0; i < 3 && found < 2; ++i)
-        {
-            const vec3 a = scene.positions[triangle[i]], b = scene.positions[triangle[(i + 1) % 3]];
-            if ((a.y < height) == (b.y < height)) continue;
-            const float s = (height - a.y) / (b.y - a.y);
-            ends[found++] = vec2(glm::mix(a.x, b.x, s), glm::mix(a.z, b.z, s));
-        }
-        if (found == 2) segments.emplace_back(ends[0], ends[1]);
-    }
-    const auto length = [](const glm::vec4& s) { return glm::distance(vec2(s), vec2(s.z, s.w)); };
-    if (segments.size() > kMostSegments)
-    {
-        std::ranges::nth_element(segments, segments.begin() + kMostSegments, std::greater<>(), length);
-        segments.resize(kMostSegments);
-    }
-    Json json = Json::array();
-    for (const glm::vec4& s : segments) json.push_back({s.x, s.y, s.z, s.w});
     return json;
 }
 
@@ -308,9 +227,9 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
                      {"bounces", settings.bounces},
                      {"seconds", secondsNow() - begin},
                      {"estimated_relmse",
-                      {{"beauty", number(reference->estimatedRelMse)},
-                       {"diffuse", number(reference->estimatedRelMseDiffuse)},
-                       {"glossy", number(reference->estimatedRelMseGlossy)}}}};
+                      {{"beauty", numberOrNull(reference->estimatedRelMse)},
+                       {"diffuse", numberOrNull(reference->estimatedRelMseDiffuse)},
+                       {"glossy", numberOrNull(reference->estimatedRelMseGlossy)}}}};
     referenceImages = std::move(reference->images);
     if (auto status = writeExr(referenceImages, cached("references", key, ".exr")); !status) return status;
     if (auto status = writeText(cached("references", key, ".json"), referenceJson.dump()); !status) return status;
@@ -404,7 +323,8 @@ Result<Json> SceneBench::errorsOf(const ImageSet& picture) const
         settings.psnr = false;
         auto compared = compareImages(picture, referenceImages, settings);
         if (!compared) return compared.error();
-        errors[name] = {{"mse", number(*compared->mse)}, {"relmse", number(*compared->relMse)}, {"flip", number(*compared->flip)}};
+        errors[name] = {
+            {"mse", numberOrNull(*compared->mse)}, {"relmse", numberOrNull(*compared->relMse)}, {"flip", numberOrNull(*compared->flip)}};
     }
     return errors;
 }
@@ -437,7 +357,7 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
         auto errors = errorsOf(picture->images);
         if (!errors) return errors.error();
         json["error"] = std::move(*errors);
-        json["wrong"] = wrongness(json, meanSquare(referenceImages.find("beauty")->pixels));
+        json["wrong"] = wrongness(json, referenceImages.find("beauty")->pixels);
         return json;
     }
     json.update(live.fieldCost);
@@ -449,7 +369,7 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     auto errors = errorsOf(lightLayers(*frame));
     if (!errors) return errors.error();
     json["error"] = std::move(*errors);
-    json["wrong"] = wrongness(json, meanSquare(referenceImages.find("beauty")->pixels));
+    json["wrong"] = wrongness(json, referenceImages.find("beauty")->pixels);
     if (desc.settings.pictures && point.knob == "default")
     {
         auto pictures = writePictures(point, *frame);

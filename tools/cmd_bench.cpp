@@ -1,13 +1,18 @@
 // sconce bench: what accuracy costs in time and memory, measured.
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <map>
 
 #include "bench/analysis.h"
+#include "bench/guard.h"
+#include "bench/point_json.h"
 #include "bench/report_page.h"
 #include "bench/results.h"
 #include "bench/sweep.h"
 #include "runtime/host_vulkan.h"
+#include "runtime/safe_file.h"
 #include "tools/common.h"
 
 namespace sconce::tools
@@ -24,7 +29,7 @@ struct BenchOptions
     std::string output = "out/bench", device;
     BenchSettings settings;
     PlanSettings plan;
-    uint32_t groupMb = 2048;
+    std::string check, baseline; // files of a guard
 };
 
 /// Probes of the default points, where --probes isn't given: those of the papers' tables for their scenes.
@@ -54,70 +59,202 @@ std::string commandLine(const BenchOptions& options)
            (options.plan.roughness ? " --roughness " + std::to_string(*options.plan.roughness) : std::string());
 }
 
-int runBench(const BenchOptions& options, const Context& context)
+/// A device, and what every scene is measured with.
+struct Session
+{
+    const BenchOptions& options;
+    const Context& context;
+    Gpu& gpu;
+    std::string device;
+    Progress progress;
+};
+
+using Publish = std::function<Status(Json scene)>;
+
+/// One scene's points, as results.json has the scene; `publish` gets it whenever something is added.
+Result<Json> benchScene(const Session& session, const std::string& source, PlanSettings plan, const BenchSettings& settings,
+                        const std::filesystem::path& folder, const Publish& publish)
+{
+    SceneOptions chosen = session.options.scene;
+    chosen.name = source;
+    Result<Scene> scene = chosen.load(session.context);
+    if (!scene) return scene.error();
+    if (plan.probes == 0) plan.probes = defaultProbes(nameOf(source));
+    const Result<std::vector<PlannedPoint>> points = planPoints(plan);
+    if (!points) return points.error();
+    SceneBench::Desc desc;
+    desc.name = nameOf(source);
+    desc.source = std::filesystem::path(source).filename().string();
+    if (session.options.camera.eye || !session.options.camera.name.empty())
+    {
+        const Result<Camera> camera = session.options.camera.choose(*scene);
+        if (!camera) return camera.error();
+        desc.camera = *camera;
+    }
+    desc.scene = std::move(*scene);
+    desc.settings = settings;
+    desc.folder = folder;
+    desc.version = SCONCE_VERSION;
+    auto bench = SceneBench::create(session.gpu, session.device, std::move(desc), points->front().settings, session.progress);
+    if (!bench) return bench.error();
+    Json described;
+    const auto publishPoints = [&](const std::vector<Json>& measured)
+    {
+        described = (*bench)->describe(*points);
+        const std::vector<Json> scaled = scaledPoints(measured);
+        described["points"] = scaled;
+        described["analysis"] = analyseScene(scaled);
+        return publish(described);
+    };
+    const auto say = [&session](const std::string& text) { note(session.context, text); };
+    if (Status status = sweepScene(**bench, *points, publishPoints, say, session.progress); !status) return status.error();
+    return described;
+}
+
+int runSweep(const Session& session)
 {
     const Stopwatch watch;
-    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
-    if (!device) return fail(device.error());
-    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
-    if (!gpu) return fail(gpu.error());
-    Json results = resultsHead(SCONCE_VERSION, commandLine(options), device->name());
-    const std::filesystem::path folder(options.output);
-    const auto say = [&context](const std::string& text) { note(context, text); };
-    const Progress progress = consoleProgress(context);
-
-    for (const std::string& source : options.scenes)
+    const std::filesystem::path folder(session.options.output);
+    Json results = resultsHead(SCONCE_VERSION, commandLine(session.options), session.device);
+    for (const std::string& source : session.options.scenes)
     {
-        SceneOptions chosen = options.scene;
-        chosen.name = source;
-        Result<Scene> scene = chosen.load(context);
-        if (!scene) return fail(scene.error());
-        PlanSettings plan = options.plan;
-        if (plan.probes == 0) plan.probes = defaultProbes(nameOf(source));
-        const Result<std::vector<PlannedPoint>> points = planPoints(plan);
-        if (!points) return fail(points.error());
-        SceneBench::Desc desc;
-        desc.name = nameOf(source);
-        desc.source = std::filesystem::path(source).filename().string();
-        if (options.camera.eye || !options.camera.name.empty())
-        {
-            const Result<Camera> camera = options.camera.choose(*scene);
-            if (!camera) return fail(camera.error());
-            desc.camera = *camera;
-        }
-        desc.scene = std::move(*scene);
-        desc.settings = options.settings;
-        desc.settings.groupBytes = uint64_t(options.groupMb) << 20;
-        desc.folder = folder;
-        desc.version = SCONCE_VERSION;
-        auto bench = SceneBench::create(**gpu, device->name(), std::move(desc), points->front().settings, progress);
-        if (!bench) return fail(bench.error());
-
         results["scenes"].push_back(Json::object());
-        const auto publish = [&](const std::vector<Json>& measured)
+        const auto publish = [&](Json scene)
         {
-            Json& described = results["scenes"].back();
-            described = (*bench)->describe(*points);
-            const std::vector<Json> scaled = scaledPoints(measured);
-            described["points"] = scaled;
-            described["analysis"] = analyseScene(scaled);
+            results["scenes"].back() = std::move(scene);
             results["answers"] = answersOf(results);
             results["seconds"] = watch.seconds();
             return writeResults(results, folder);
         };
-        if (Status status = sweepScene(**bench, *points, publish, say, progress); !status) return fail(status.error());
+        const Result<Json> scene = benchScene(session, source, session.options.plan, session.options.settings, folder, publish);
+        if (!scene) return fail(scene.error());
     }
     if (Status status = writeReportPage(nlohmann::json(results), folder); !status) return fail(status.error());
-    progress("bench", 1.0);
-    if (context.json)
+    session.progress("bench", 1.0);
+    if (session.context.json)
     {
-        Json json{{"results", (folder / "results.json").string()}, {"report", (folder / "report/index.html").string()}, {"scenes", results["scenes"].size()}};
+        Json json{{"results", (folder / "results.json").string()}, {"report", (folder / "report/index.html").string()}};
+        json["scenes"] = results["scenes"].size();
         addCost(json, watch);
         print(json);
     }
     else
         std::cout << (folder / "results.json").string() << ", results.csv, report/index.html" << std::endl;
     return exitOk;
+}
+
+/// A folder for the measurements of a guard, gone at its end: nothing that another program measured may stand in for this one's.
+class Scratch
+{
+public:
+    Scratch()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "sconce-bench-XXXXXX").string();
+        if (mkdtemp(name.data())) path = name;
+    }
+    ~Scratch()
+    {
+        std::error_code ignored; // nothing depends on it
+        if (!path.empty()) std::filesystem::remove_all(path, ignored);
+    }
+    std::filesystem::path path; // empty: it could not be made
+};
+
+/// What the points of a guard are measured with, and back.
+Json guardOptions(const BenchSettings& settings, const PlanSettings& plan)
+{
+    return {{"size", {settings.width, settings.height}},
+            {"rays", settings.rays},
+            {"spp", settings.referencePaths},
+            {"frames", settings.frames},
+            {"probes", plan.probes},
+            {"resolution", plan.ours.resolution},
+            {"bounces", plan.ours.bounces},
+            {"knobs", plan.knobs}};
+}
+
+void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings& plan)
+{
+    settings.width = options["size"][0];
+    settings.height = options["size"][1];
+    settings.rays = options["rays"];
+    settings.referencePaths = options["spp"];
+    settings.frames = options["frames"];
+    plan.probes = options["probes"];
+    plan.ours.resolution = options["resolution"];
+    plan.ours.bounces = options["bounces"];
+    plan.knobs = options["knobs"].get<std::vector<std::string>>();
+}
+
+/// The points of a guarded scene, measured anew: ours alone, without pictures.
+Result<std::vector<Json>> guardedPoints(const Session& session, const std::string& source, BenchSettings settings, PlanSettings plan)
+{
+    const Scratch scratch;
+    if (scratch.path.empty())
+        return Error{ErrorCode::fileError, "No temporary folder can be made; set TMPDIR to one that can be written to."};
+    settings.pictures = false;
+    plan.methods = {"ours"};
+    const Result<Json> scene = benchScene(session, source, plan, settings, scratch.path, [](const Json&) { return success(); });
+    if (!scene) return scene.error();
+    return (*scene)["points"].get<std::vector<Json>>();
+}
+
+int writeGuard(const Session& session)
+{
+    Json guard = emptyGuard();
+    for (const std::string& source : session.options.scenes)
+    {
+        PlanSettings plan = session.options.plan;
+        if (plan.probes == 0) plan.probes = defaultProbes(nameOf(source));
+        const Result<std::vector<Json>> points = guardedPoints(session, source, session.options.settings, plan);
+        if (!points) return fail(points.error());
+        guard["scenes"].push_back(guardedScene(nameOf(source), source, guardOptions(session.options.settings, plan), *points));
+    }
+    if (Status status = writeText(session.options.baseline, guard.dump(1) + "\n"); !status) return fail(status.error());
+    return exitOk;
+}
+
+int checkGuard(const Session& session)
+{
+    const Stopwatch watch;
+    const Result<Json> guard = readGuard(session.options.check);
+    if (!guard) return fail(guard.error());
+    Json json = {{"worse", Json::array()}, {"points", Json::array()}};
+    for (const Json& scene : (*guard)["scenes"])
+    {
+        BenchSettings settings = session.options.settings;
+        PlanSettings plan;
+        setGuardOptions(scene["options"], settings, plan);
+        const Result<std::vector<Json>> points = guardedPoints(session, scene["source"], settings, plan);
+        if (!points) return fail(points.error());
+        for (const std::string& sentence : worsened(*guard, scene, *points)) json["worse"].push_back(sentence);
+        for (const Json& point : *points)
+            json["points"].push_back({{"scene", scene["name"]},
+                                      {"id", point["id"]},
+                                      {"trace_ms", numberOrNull(figureOf(point, "trace_ms").value_or(NAN))},
+                                      {"reads", *figureOf(point, "reads")},
+                                      {"wrong_rays", *figureOf(point, "wrong_rays")}});
+    }
+    addCost(json, watch);
+    if (session.context.json)
+        print(json);
+    else
+        for (const Json& point : json["points"])
+            std::cout << point["scene"].get<std::string>() << " " << point["id"].get<std::string>() << ": " << point["reads"]
+                      << " reads a ray, wrong rays " << point["wrong_rays"] << ", trace " << point["trace_ms"] << " ms" << std::endl;
+    for (const Json& sentence : json["worse"]) std::cerr << "sconce: " << sentence.get<std::string>() << std::endl;
+    return json["worse"].empty() ? exitOk : exitThreshold;
+}
+
+int runBench(const BenchOptions& options, const Context& context)
+{
+    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
+    if (!device) return fail(device.error());
+    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
+    if (!gpu) return fail(gpu.error());
+    const Session session{options, context, **gpu, device->name(), consoleProgress(context)};
+    if (!options.check.empty()) return checkGuard(session);
+    return options.baseline.empty() ? runSweep(session) : writeGuard(session);
 }
 
 } // namespace
@@ -163,14 +300,23 @@ void addBenchCommand(CLI::App& app, Context& context)
     bench->add_option("--frames", settings.frames, "Timed frames of every point, in turns (default: 20; range: 1 to 1000)")
         ->check(unlisted(CLI::Range(1u, 1000u)))
         ->type_name("N");
+    bench
+        ->add_option_function<uint32_t>(
+            "--group-memory", [&settings](uint32_t mebibytes) { settings.groupBytes = uint64_t(mebibytes) << 20; },
+            "Light fields timed in turns stand on the device together, up to so many MiB (default: 2048; range: 1 to 1048576)")
+        ->check(unlisted(CLI::Range(1u, 1048576u)))
+        ->type_name("MIB");
+    bench
+        ->add_option("--check", options->check,
+                     "Measure what this baseline holds, and exit 1 when reads, wrong rays, errors or bytes are worse by more than its "
+                     "margins (default: none)")
+        ->type_name("FILE");
+    bench
+        ->add_option("--baseline", options->baseline, "Write such a baseline of the scenes, ours alone, instead of results (default: none)")
+        ->type_name("FILE");
     bench->add_option("--spp", settings.referencePaths, "Paths a pixel of the reference (default: 256; range: 2 to 1048576)")
         ->check(unlisted(CLI::Range(2u, 1048576u)))
         ->type_name("N");
-    bench
-        ->add_option("--group-memory", options->groupMb,
-                     "Light fields timed in turns stand on the device together, up to so many MiB (default: 2048; range: 1 to 1048576)")
-        ->check(unlisted(CLI::Range(1u, 1048576u)))
-        ->type_name("MIB");
     bench->add_option("--seed", settings.seed, "Of rays and paths (default: 1; range: 0 to 2^64-1)")->type_name("N");
     addDevice(bench, options->device);
     onChosen(bench, context, options,
