@@ -114,9 +114,11 @@ export function relativeError(image: ReportImage, reference: ReportImage, pixel:
 
 /** The largest number but for the highest 0.5 % of the pixels, at least 1: where the colours end. */
 export function topOf(images: ReportImage[]): number {
-    const values = images.flatMap((image) => Array.from(image.numbers ?? []).filter((value) => value !== kNoNumber));
-    values.sort((a, b) => a - b);
-    return Math.max(1, values[Math.floor(0.995 * (values.length - 1))] ?? 1);
+    const values = new Uint32Array(images.reduce((sum, image) => sum + (image.numbers?.length ?? 0), 0));
+    let count = 0;
+    for (const image of images) for (const value of image.numbers ?? []) if (value !== kNoNumber) values[count++] = value;
+    const present = values.subarray(0, count).sort();
+    return Math.max(1, present[Math.floor(0.995 * (count - 1))] ?? 1);
 }
 
 export interface Paint {

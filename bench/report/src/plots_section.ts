@@ -3,7 +3,7 @@ import { details } from "./details";
 import { h, section, select } from "./dom";
 import { errorFigures, figure, measured, type Figure } from "./figures";
 import { glyph, type MethodStyle } from "./methods";
-import { methodsOf, points, type Scene } from "./results";
+import { isNumber, methodsOf, points, type Scene } from "./results";
 import { scatter } from "./scatter";
 import type { Store } from "./store";
 
@@ -15,7 +15,13 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
     const first = offered[0] as Figure;
     const timed = measured(points(scene), [figure("frame_ms")]).length > 0;
     const costs = kCosts.map((key) => (key === "frame_ms" && !timed ? figure("trace_ms") : figure(key)));
-    const plots = costs.map((cost) => scatter(points(scene), cost, first, styles, store));
+    /** The reference's own relMSE: what is below it can't be told from the truth. */
+    const noiseOf = (error: Figure): number | null => {
+        const layer = /^error\.(.*)\.relmse$/.exec(error.key)?.[1];
+        const noise = scene.reference?.estimated_relmse?.[layer ?? ""];
+        return isNumber(noise) && noise > 0 ? noise : null;
+    };
+    const plots = costs.map((cost) => scatter(points(scene), cost, first, noiseOf, styles, store));
 
     const legend = h("div", { class: "legend", role: "group", "aria-label": "Methods shown" });
     for (const method of methodsOf(scene)) {
@@ -46,7 +52,7 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
         h(
             "p",
             { class: "lead" },
-            "Low and left is better. Thick grey: the Pareto front of all that is shown. Thin lines: each method's own front. Large marks: default settings. Hollow marks: a wrong image. Drag to zoom, double-click for the whole; the wheel zooms with Ctrl or after a click.",
+            "Low and left is better. Thick grey: the Pareto front of all that is shown. Thin lines: each method's own front. Large marks: default settings. Hollow marks: a wrong image. Dashed: the noise of the reference itself. Drag to zoom, double-click for the whole; the wheel zooms with Ctrl or after a click.",
         ),
         h("div", { class: "controls" }, errors, knob, legend),
         h("div", { class: "plots" }, ...plots.map((plot) => plot.element)),

@@ -12,6 +12,7 @@ import { logTicks, paddedRange } from "./ticks";
 import { hideTooltip, showTooltip } from "./tooltip";
 
 const kHeight = 300; // CSS pixels
+const kNear = 4; // times the noise of the reference: errors below it make its line worth showing
 const kReach = 18; // CSS pixels from the pointer to a point it means
 
 export interface Scatter {
@@ -19,7 +20,15 @@ export interface Scatter {
     setError(error: Figure): void;
 }
 
-export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: Map<string, MethodStyle>, store: Store): Scatter {
+/** @param noiseOf  the error that the reference itself has; null where it isn't known */
+export function scatter(
+    all: Point[],
+    cost: Figure,
+    firstError: Figure,
+    noiseOf: (error: Figure) => number | null,
+    styles: Map<string, MethodStyle>,
+    store: Store,
+): Scatter {
     let error = firstError;
     let placed: Placed<Point>[] = [];
     let view = { x: [0.1, 10] as [number, number], y: [0.1, 10] as [number, number] };
@@ -52,7 +61,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
     }
 
     function fit(): void {
-        zoom({ x: paddedRange(placed.map((p) => p.x)), y: paddedRange(placed.map((p) => p.y)) });
+        zoom(range());
     }
     function zoom(next: typeof view): void {
         view = next;
@@ -71,7 +80,7 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
     }
 
     place();
-    view = { x: paddedRange(placed.map((p) => p.x)), y: paddedRange(placed.map((p) => p.y)) };
+    view = range();
 
     const axis = (rotated: boolean): uPlot.Axis => ({
         stroke: () => colourOf("--ink-2"),
@@ -119,68 +128,91 @@ export function scatter(all: Point[], cost: Figure, firstError: Figure, styles: 
     );
     const over = plot.over;
 
+    /** The whole range of what is placed, and of the noise where it is near. */
+    function range(): typeof view {
+        const errors = placed.map((p) => p.y);
+        const noise = noiseOf(error);
+        if (noise !== null && errors.some((y) => y < kNear * noise * error.axis)) errors.push(noise * error.axis);
+        return { x: paddedRange(placed.map((p) => p.x)), y: paddedRange(errors) };
+    }
+
     function draw(u: uPlot): void {
         const { ctx, bbox } = u;
-        const scale = devicePixelRatio;
-        const at = (p: Placed<Point>): [number, number] => [u.valToPos(p.x, "x", true), u.valToPos(p.y, "y", true)];
         ctx.save();
         ctx.beginPath();
         ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
         ctx.clip();
+        ctx.lineJoin = "round";
         const colours = new Map([...styles].map(([method, style]) => [method, colourOf(style.colour)]));
         const usable = placed.filter((p) => !p.item.wrong && store.stands(p.item));
-
-        ctx.lineJoin = "round";
-        ctx.strokeStyle = colourOf("--front"); // the Pareto front of all: what lies above and right of it is beaten
-        ctx.lineWidth = 5 * scale;
-        const front = paretoFront(usable);
-        ctx.beginPath();
-        front.forEach((p, index) => {
-            const [x, y] = at(p);
-            const before = front[index - 1];
-            if (before) ctx.lineTo(x, at(before)[1]);
-            else ctx.moveTo(x, bbox.top);
-            ctx.lineTo(x, y);
-            if (index === front.length - 1) ctx.lineTo(bbox.left + bbox.width, y);
-        });
-        ctx.stroke();
-
+        drawFront(u, paretoFront(usable));
+        drawNoise(u);
         for (const [method, colour] of colours) {
             ctx.strokeStyle = colour; // each method's own front
-            ctx.lineWidth = 1.25 * scale;
+            ctx.lineWidth = 1.25 * devicePixelRatio;
             ctx.beginPath();
-            paretoFront(usable.filter((p) => p.item.method === method)).forEach((p, index) =>
-                index ? ctx.lineTo(...at(p)) : ctx.moveTo(...at(p)),
-            );
+            paretoFront(usable.filter((p) => p.item.method === method)).forEach((p) => ctx.lineTo(...canvasPosition(u, p)));
             ctx.stroke();
         }
-
+        drawMarks(u, colours);
+        ctx.restore();
+    }
+    function canvasPosition(u: uPlot, p: Placed<Point>): [number, number] {
+        return [u.valToPos(p.x, "x", true), u.valToPos(p.y, "y", true)];
+    }
+    /** Steps: what lies above and right of them is beaten. */
+    function drawFront(u: uPlot, front: Placed<Point>[]): void {
+        const { ctx, bbox } = u;
+        ctx.strokeStyle = colourOf("--front");
+        ctx.lineWidth = 5 * devicePixelRatio;
+        ctx.beginPath();
+        let height = bbox.top;
+        for (const p of front) {
+            const [x, y] = canvasPosition(u, p);
+            ctx.lineTo(x, height);
+            ctx.lineTo(x, y);
+            height = y;
+        }
+        if (front.length > 0) ctx.lineTo(bbox.left + bbox.width, height);
+        ctx.stroke();
+    }
+    function drawNoise(u: uPlot): void {
+        const noise = noiseOf(error);
+        if (noise === null) return;
+        const { ctx, bbox } = u;
+        const y = u.valToPos(noise * error.axis, "y", true);
+        ctx.save();
+        ctx.strokeStyle = colourOf("--ink-2");
+        ctx.lineWidth = devicePixelRatio;
+        ctx.setLineDash([5 * devicePixelRatio, 4 * devicePixelRatio]);
+        ctx.beginPath();
+        ctx.moveTo(bbox.left, y);
+        ctx.lineTo(bbox.left + bbox.width, y);
+        ctx.stroke();
+        ctx.restore();
+    }
+    function drawMarks(u: uPlot, colours: Map<string, string>): void {
+        const { ctx } = u;
         const paper = colourOf("--paper");
         const ink = colourOf("--ink");
-        for (const pass of [0, 1])
-            // what stands out is drawn over the rest
-            for (const p of placed) {
-                const lit = p.item === store.hovered || p.item === store.picked;
-                const stands = store.stands(p.item);
-                if ((lit || stands ? 1 : 0) !== pass) continue;
-                const [x, y] = at(p);
-                ctx.save();
-                ctx.translate(x, y);
-                const size = (lit ? 7 : p.item.knob === "default" ? 6 : 4.5) * scale;
-                ctx.scale(size, size);
-                ctx.lineWidth = (lit ? 2 : 1) * (scale / size);
-                ctx.globalAlpha = stands || lit ? 1 : 0.2;
-                const colour = colours.get(p.item.method) ?? ink;
-                ctx.fillStyle = p.item.wrong ? paper : colour;
-                ctx.strokeStyle = lit ? ink : p.item.wrong ? colour : paper;
-                const shape = shapes.get(p.item.method);
-                if (shape) {
-                    ctx.fill(shape);
-                    ctx.stroke(shape);
-                }
-                ctx.restore();
-            }
-        ctx.restore();
+        const lit = (p: Placed<Point>): boolean => p.item === store.hovered || p.item === store.picked;
+        const rank = (p: Placed<Point>): number => (lit(p) ? 2 : store.stands(p.item) ? 1 : 0);
+        for (const p of [...placed].sort((a, b) => rank(a) - rank(b))) {
+            const shape = shapes.get(p.item.method);
+            if (!shape) continue;
+            const colour = colours.get(p.item.method) ?? ink;
+            const size = (lit(p) ? 7 : p.item.knob === "default" ? 6 : 4.5) * devicePixelRatio;
+            ctx.save();
+            ctx.translate(...canvasPosition(u, p));
+            ctx.scale(size, size);
+            ctx.lineWidth = ((lit(p) ? 2 : 1) * devicePixelRatio) / size;
+            ctx.globalAlpha = rank(p) > 0 ? 1 : 0.2;
+            ctx.fillStyle = p.item.wrong ? paper : colour;
+            ctx.strokeStyle = lit(p) ? ink : p.item.wrong ? colour : paper;
+            ctx.fill(shape);
+            ctx.stroke(shape);
+            ctx.restore();
+        }
     }
 
     /** Where a point stands on the page, CSS pixels in the plot's area. */
