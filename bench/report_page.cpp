@@ -24,7 +24,7 @@ namespace sconce
 namespace
 {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// JSON that can stand in a <script>: the only way out of one is a '<', and in JSON that stands in strings alone.
 std::string scriptSafe(const Json& json)
@@ -140,7 +140,7 @@ std::vector<uint8_t> deflated(const std::vector<uint8_t>& bytes)
 
 } // namespace
 
-Status writeReportPage(const nlohmann::json& results, const std::filesystem::path& folder)
+Status writeReportPage(const nlohmann::ordered_json& results, const std::filesystem::path& folder)
 {
     const std::string_view page(reinterpret_cast<const char*>(report_template), sizeof report_template);
     constexpr std::string_view mark = "<!--sconce:data-->"; // build.mjs sees to it that the template has it once

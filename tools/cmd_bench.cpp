@@ -129,7 +129,7 @@ int runSweep(const Session& session)
         const Result<Json> scene = benchScene(session, source, session.options.plan, session.options.settings, folder, publish);
         if (!scene) return fail(scene.error());
     }
-    if (Status status = writeReportPage(nlohmann::json(results), folder); !status) return fail(status.error());
+    if (Status status = writeReportPage(results, folder); !status) return fail(status.error());
     session.progress("bench", 1.0);
     if (session.context.json)
     {

@@ -15,7 +15,7 @@ namespace sconce::testing_support
 namespace
 {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr uint32_t kNone = 0xffffffffu;
 
@@ -238,7 +238,7 @@ void writeNumbers(const std::filesystem::path& file, int width, int height, cons
     writeImage(file, width, height, 1, numbers.data(), numbers.size() * sizeof numbers[0]);
 }
 
-nlohmann::json madeUpResults(const std::filesystem::path& folder, const MadeUp& what)
+nlohmann::ordered_json madeUpResults(const std::filesystem::path& folder, const MadeUp& what)
 {
     Json scenes = Json::array();
     for (int number = 0; number < what.scenes; ++number)

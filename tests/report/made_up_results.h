@@ -17,7 +17,7 @@ struct MadeUp
 
 /// Writes the image files and returns results.json. Every figure is a smooth function of the settings, so orders and fronts are known:
 /// more probes and texels cost more and err less. Some figures are missing, null or not finite, as they can be.
-nlohmann::json madeUpResults(const std::filesystem::path& folder, const MadeUp& what = {});
+nlohmann::ordered_json madeUpResults(const std::filesystem::path& folder, const MadeUp& what = {});
 
 /// Writes an image file whose pixels are given: halves as their bits, three a pixel, or numbers.
 void writeHalves(const std::filesystem::path& file, int width, int height, const std::vector<uint16_t>& bits);

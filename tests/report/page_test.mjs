@@ -94,7 +94,7 @@ test("hovered points name their method, figures and settings; a click shows all 
     assert.match(text, /^(ours|b0plus|b0|wang|path tracer), /);
     assert.match(text, /frame time\s+[\d.]+ ms \([\d.]+ to [\d.]+\)/);
     assert.match(text, /relMSE of glossy\s+[\d.]+/);
-    assert.match(text, /resolution \d+/);
+    assert.match(text, /probes \d+ · placement \w+ · resolution \d+/); // in the order of results.json
     await page.mouse.click(x, y);
     const name = text.split("\n")[0];
     assert.equal(await page.locator(".details h3").innerText(), name);

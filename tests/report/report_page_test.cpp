@@ -17,7 +17,7 @@ namespace sconce
 namespace
 {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using testing_support::madeUpResults;
 
 struct ReportPage : testing::Test

@@ -11,7 +11,7 @@
 
 using namespace sconce;
 using namespace sconce::testing_support;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 namespace
 {
@@ -29,7 +29,7 @@ Json nastyNames(Json results)
     const std::string key = nasty.substr(0, 60);
     for (Json& point : scene["points"])
     {
-        if (point["method"] == "wang") point["method"] = nasty;
+        if (point["method"].get<std::string>() == "wang") point["method"] = nasty;
         point["settings"][key] = nasty;
     }
     scene["analysis"]["breaks"][0]["sentence"] = nasty;
