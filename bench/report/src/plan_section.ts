@@ -65,7 +65,7 @@ function plan(
     );
     const dots = probes.map((probe, index) => {
         const [x, y] = place(probe.position);
-        const near = (((probe.position[toward] as number) - (low[toward] as number)) / span(toward)) * 0.6 + 0.7; // nearer to the eye is larger
+        const near = (((probe.position[toward] as number) - (low[toward] as number)) / span(toward)) * 1.05 + 0.55; // nearer to the eye is larger
         return svg("circle", {
             cx: x,
             cy: y,
@@ -74,7 +74,8 @@ function plan(
             "data-probe": index,
         });
     });
-    const order = dots.map((_, index) => index).sort((a, b) => (probes[a]?.position[toward] ?? 0) - (probes[b]?.position[toward] ?? 0));
+    // The nearest first: of probes over each other, the smaller ones show as rings within the larger.
+    const order = dots.map((_, index) => index).sort((a, b) => (probes[b]?.position[toward] ?? 0) - (probes[a]?.position[toward] ?? 0));
     drawing.append(...order.map((index) => dots[index] as SVGCircleElement));
 
     let current = -1;
