@@ -4,7 +4,7 @@
 # Exit 77 where the browser, Node.js or the packages are missing.
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
-writer=$1 packages=$2 pages=$3
+writer=$1 packages=$(realpath -m "$2") pages=$(realpath -m "$3")
 
 command -v node > /dev/null || { echo "Node.js is not installed"; exit 77; }
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || { echo "Chromium is not installed"; exit 77; }
