@@ -34,9 +34,11 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     using Base::noneTried;
     using Base::wasTried;
     using TriedProbes = typename Base::TriedProbes;
+    using Base::holdsRadiance;
     using Base::kRanked;
     using Base::kUnknown;
     using Base::octahedralFromDirection;
+    using Base::prefilteredRadiance;
     using Base::probeHeader;
     using Base::radianceWord;
     using Base::rankedProbesAt;

@@ -97,7 +97,7 @@ void resample(Text& text, const Faces& faces, uint32_t* out)
             }
 }
 
-/// Level 0 and radiance: what lies in each octahedral texel's direction.
+/// Level 0 and radiance (null: the faces have none): what lies in each octahedral texel's direction.
 void resampleSurface(Text& text, const FieldData& faces, size_t probe, uint32_t* words, uint32_t* radiance)
 {
     const uint32_t size = faces.info.faceSize, wordsPerFace = faces.info.wordsPerProbe / 6;
@@ -120,7 +120,7 @@ void resampleSurface(Text& text, const FieldData& faces, size_t probe, uint32_t*
                 out = text.realToHalf(1.0f / (q * uvw.z)) | (text.packNormal8(text.texelNormal(face, at, word)) << 16);
             }
             const size_t light = ((probe * 6 + size_t(face)) * size + texel.y) * size + texel.x;
-            radiance[y * size + x] = faces.radiance[light];
+            if (radiance) radiance[y * size + x] = faces.radiance[light];
         }
 }
 
@@ -136,6 +136,7 @@ Result<FieldData> wangField(const FieldData& faces)
     made.info = faces.info;
     made.probes = faces.probes;
     made.irradiance = faces.irradiance;
+    made.prefiltered = faces.prefiltered;
     made.octree = faces.octree;
     made.resolution = size;
     made.bounces = faces.bounces;
@@ -147,13 +148,13 @@ Result<FieldData> wangField(const FieldData& faces)
     for (uint32_t level = 0; level <= made.info.topLevel; ++level) words += (size >> level) * (size >> level);
     made.info.wordsPerProbe = words;
     made.distance.assign(size_t(words) * faces.probes.size(), kNothing);
-    made.radiance.assign(size_t(size) * size * faces.probes.size(), 0);
+    if (!faces.radiance.empty()) made.radiance.assign(size_t(size) * size * faces.probes.size(), 0);
     parallelFor(faces.probes.size(),
                 [&](size_t probe)
                 {
                     Text text(faces, {});
                     uint32_t* out = made.distance.data() + probe * words;
-                    resampleSurface(text, faces, probe, out, made.radiance.data() + probe * size * size);
+                    resampleSurface(text, faces, probe, out, made.radiance.empty() ? nullptr : made.radiance.data() + probe * size * size);
                     Faces chain{size, std::vector<uint32_t>(size_t(6) * size * size)};
                     for (uint32_t face = 0; face < 6; ++face)
                         for (uint32_t i = 0; i < size * size; ++i)

@@ -154,6 +154,7 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     lit.probes = field.probes;
     lit.octree = field.octree;
     lit.irradiance = field.irradiance;
+    lit.distance = field.distance; // tells which probes a wall hides
     auto device = LightField::create(gpu, lit);
     if (!device) return device.error();
     const std::string stage = "bounce " + std::to_string(number);
@@ -194,6 +195,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     bake.field.resolution = settings.resolution;
     bake.field.bounces = settings.bounces;
     bake.field.sceneName = scene.name;
+    bake.field.effects = settings.effects;
     bake.field.probes.resize(probes.size());
     for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (probes[i] - info.origin) / info.scale;
 
@@ -228,6 +230,9 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         for (uint32_t b = 1; b <= settings.bounces; ++b)
             if (auto status = bake.bounce(**gpu, **baker, b); !status) return status.error();
         spent.bounceSeconds = watch.lap();
+        if (settings.prefiltered) prefilterRadiance(bake.field);
+        if (!settings.radiance) bake.field.radiance = {};
+        spent.prefilterSeconds = watch.lap();
         spent.peakDeviceBytes = (*gpu)->memory().peak();
     }
     if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};

@@ -19,6 +19,9 @@ struct BakeSettings
     uint32_t chart = gpu::kChartCube; // or kChartOctahedral, which the grid baselines need
     uint32_t bounces = 2;             // times the baked light is re-injected, 0..8; each costs one gather a texel
     DeviceSceneDesc scene;            // textures and lights
+    std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
+    bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
+    bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid; // set when the probes are a uniform one
 };
@@ -31,6 +34,7 @@ struct BakeReport
     double octreeSeconds = 0.0;  // summaries and octree
     bool octreeOnDevice = false; // else the maps didn't fit the device's memory and the host built it: the same bytes, later
     double bounceSeconds = 0.0;
+    double prefilterSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;
     uint32_t lights = 0; // delta lights, emitter samples and sky directions
 };

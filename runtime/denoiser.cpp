@@ -37,22 +37,25 @@ void writeInputs(DescriptorSet& set, const FrameInputs& inputs)
     set.write(2, inputs.baseColorMetallic, inputs.layout);
 }
 
-Result<Denoiser> Denoiser::create(Gpu& gpu, VkDescriptorSetLayout firstSet, const Buffer& frame, const GpuImage& noisy,
-                                  const GpuImage& filtered)
+Result<Denoiser> Denoiser::create(Gpu& gpu, const Desc& desc, const Buffer& frame, const GpuImage& noisy, const GpuImage& filtered)
 {
     Denoiser made;
     made.gpu = &gpu;
-    const DescriptorSet::Binding images[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    made.desc = desc;
+    const DescriptorSet::Binding images[] = {
+        {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (bool forward : {true, false})
     {
         auto set = makeFrameSet(gpu, frame, images);
         if (!set) return set.error();
         set->write(4, (forward ? noisy : filtered).view(), VK_IMAGE_LAYOUT_GENERAL);
         set->write(5, (forward ? filtered : noisy).view(), VK_IMAGE_LAYOUT_GENERAL);
+        set->write(kTileBinding, desc.tiles ? desc.tiles->buffer() : frame); // without tiles it is not read
         (forward ? made.forth : made.back) = std::move(*set);
     }
-    const VkDescriptorSetLayout layouts[] = {firstSet, made.forth.layout()};
-    auto built = Pipeline::compute(gpu, denoise_comp, layouts, sizeof(DenoisePush));
+    const VkDescriptorSetLayout layouts[] = {desc.firstSet, made.forth.layout()};
+    const uint32_t constants[] = {desc.tiles ? 1u : 0u, desc.term};
+    auto built = Pipeline::compute(gpu, denoise_comp, layouts, sizeof(DenoisePush), constants);
     if (!built) return built.error();
     made.pipeline = std::move(*built);
     return made;
@@ -64,7 +67,7 @@ void Denoiser::setInputs(const FrameInputs& inputs)
     writeInputs(back, inputs);
 }
 
-void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet, uint32_t width, uint32_t height, bool followRoughness) const
+void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet) const
 {
     bool forward = true;
     for (int stride : kStrides)
@@ -73,8 +76,8 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet, uint32_t wi
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         const VkDescriptorSet sets[] = {firstSet, (forward ? forth : back).handle()};
         pipeline.bind(cmd, sets);
-        pipeline.push(cmd, DenoisePush{stride, followRoughness ? 1 : 0});
-        gpu->vk.CmdDispatch(cmd, (width + 7) / 8, (height + 7) / 8, 1);
+        pipeline.push(cmd, DenoisePush{stride, desc.followRoughness ? 1 : 0});
+        dispatchTiles(*gpu, cmd, desc.tiles, desc.term, desc.width, desc.height);
         forward = !forward;
     }
 }

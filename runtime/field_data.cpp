@@ -18,6 +18,7 @@ FieldBytes bytesByPart(const FieldData& field)
     }
     bytes.distance = distanceBytes - bytes.normals;
     bytes.radiance = field.radiance.size() * sizeof(uint32_t);
+    bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
     bytes.irradiance = field.irradiance.size() * sizeof(uint32_t);
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
@@ -49,7 +50,8 @@ uint32_t chartSize(uint32_t chart, uint32_t resolution)
 size_t bytesPerProbe(uint32_t chart, uint32_t resolution)
 {
     const uint32_t size = chartSize(chart, resolution);
-    const size_t words = size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe;
+    const size_t words =
+        size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
     return words * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
 }
 

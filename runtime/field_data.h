@@ -18,11 +18,13 @@ struct FieldData
 {
     gpu::LightFieldInfo info{};
     std::vector<gpu::ProbeHeader> probes;
-    std::vector<uint32_t> distance;   // [probe][info.wordsPerProbe]
-    std::vector<uint32_t> radiance;   // [probe][face][y][x] (cube) or [probe][y][x] (octahedral), R11G11B10F, finest level only
-    std::vector<uint32_t> irradiance; // [probe][kIrradianceSize^2][2]: R11G11B10F cosine-weighted mean (irradiance / pi) of what surfaces
-                                      // reflect, without emission and sky, then
-                                      // half mean distance | half variance of distance << 16, field units, cosine-power lobe
+    std::vector<uint32_t> distance;    // [probe][info.wordsPerProbe]
+    std::vector<uint32_t> radiance;    // [probe][face][y][x] (cube) or [probe][y][x] (octahedral), R11G11B10F, finest level only;
+                                       // empty: nothing in the scene is glossy
+    std::vector<uint32_t> irradiance;  // [probe][kIrradianceSize^2][2]: R11G11B10F cosine-weighted mean (irradiance / pi) of what surfaces
+                                       // reflect, without emission and sky, then
+                                       // half mean distance | half variance of distance << 16, field units, cosine-power lobe
+    std::vector<uint32_t> prefiltered; // [probe][kPrefilteredWords]: R11G11B10F radiance, layout: shaders/shared/prefiltered.h
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -33,8 +35,8 @@ struct FieldData
 /// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.
 struct FieldBytes
 {
-    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0;
-    size_t total() const { return distance + normals + radiance + irradiance + index; }
+    size_t distance = 0, normals = 0, radiance = 0, prefiltered = 0, irradiance = 0, index = 0;
+    size_t total() const { return distance + normals + radiance + prefiltered + irradiance + index; }
 };
 FieldBytes bytesByPart(const FieldData& field);
 
@@ -47,6 +49,9 @@ inline constexpr uint32_t kIrradianceWordsPerProbe = 2 * gpu::kIrradianceSize * 
 
 /// Texels a side of a chart's map where an octahedral one has `resolution`: cube faces have half of it.
 uint32_t chartSize(uint32_t chart, uint32_t resolution);
+
+/// Fills `prefiltered` from `radiance`; on any number of threads the same bytes. Cost: about 40 ms a probe and core.
+void prefilterRadiance(FieldData& field);
 
 /// Bytes that every further probe adds to a light field, index apart: what a budget of memory is divided by.
 size_t bytesPerProbe(uint32_t chart, uint32_t resolution);

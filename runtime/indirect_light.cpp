@@ -1,6 +1,7 @@
 #include "runtime/indirect_light.h"
 
-#include "spirv/gather_diffuse_comp.h"
+#include "runtime/environment_brdf.h"
+#include "spirv/gather_light_comp.h"
 #include "spirv/trace_glossy_comp.h"
 
 namespace sconce
@@ -9,29 +10,100 @@ namespace
 {
 
 constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr uint32_t kTableBinding = 6; // gather_light.comp: the environment BRDF
+
+std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc)
+{
+    const uint32_t most = gpu.properties.limits.maxImageDimension2D;
+    if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
+        return "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) + " is outside 1.." + std::to_string(most) +
+               " pixels a side";
+    if (desc.effects.rough && !field.holdsPrefiltered())
+        return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
+    if ((desc.effects.glossy || desc.effects.mirror) && !field.holdsRadiance() && !field.holdsPrefiltered())
+        return "the light field holds no radiance; bake it with the effect 'glossy', or leave 'glossy' and 'mirror' out";
+    return {};
+}
 
 } // namespace
 
-Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, uint32_t storageImages)
+Status IndirectLight::makeImage(GpuImage& target, VkFormat format, const char* what)
 {
-    const DescriptorSet::Binding images[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    auto made = makeFrameSet(*gpu, frame, std::span(images).first(storageImages));
+    ImageDesc imageDesc;
+    imageDesc.format = format;
+    imageDesc.width = desc.width;
+    imageDesc.height = desc.height;
+    imageDesc.usage =
+        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    auto result = gpu->makeImage(imageDesc, what);
+    if (!result) return result.error();
+    target = std::move(*result);
+    return gpu->submit(
+        [&](VkCommandBuffer cmd)
+        {
+            transition(*gpu, cmd, target,
+                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                        0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+        });
+}
+
+/// @param images     of bindings 4 and 5
+/// @param constants  after the field's and whether the pass runs on tiles
+Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
+                               std::initializer_list<uint32_t> constants)
+{
+    const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {kTableBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                               {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto made = makeFrameSet(*gpu, frame, bindings);
     if (!made) return made.error();
     set = std::move(*made);
+    uint32_t binding = 4;
+    for (const GpuImage* image : images) set.write(binding++, image->view(), VK_IMAGE_LAYOUT_GENERAL);
+    set.write(kTableBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
+    set.write(kTileBinding, tileList ? tileList->buffer() : frame);
+    const auto fieldConstants = field->constants();
+    std::vector<uint32_t> values(fieldConstants.begin(), fieldConstants.end());
+    values.push_back(tileList ? 1u : 0u);
+    values.insert(values.end(), constants);
     const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
-    auto built = Pipeline::compute(*gpu, shader, layouts, 0, field->constants());
+    auto built = Pipeline::compute(*gpu, shader, layouts, 0, values);
     if (!built) return built.error();
     pipeline = std::move(*built);
     return success();
 }
 
+Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
+{
+    if (auto s = makeImage(image, kLightFormat, term == gpu::kTermMirror ? "mirrored light" : "glossy light"); !s) return s;
+    if (desc.counts && !countImage)
+        if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
+    const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
+    return makePass(pipeline, set, shader, {&image, desc.counts ? &countImage : &image}, {term, desc.counts ? 1u : 0u});
+}
+
+Status IndirectLight::makeGather()
+{
+    const IndirectEffects& effects = desc.effects;
+    if (effects.diffuse)
+        if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
+    if (effects.rough)
+    {
+        if (auto s = makeImage(roughImage, kLightFormat, "rough reflections"); !s) return s;
+        const std::vector<glm::vec2> table = environmentBrdf();
+        auto buffer = gpu->makeBufferWith<glm::vec2>(table, 0, "environment BRDF");
+        if (!buffer) return buffer.error();
+        brdfTable = std::move(*buffer);
+    }
+    const GpuImage& diffuse = effects.diffuse ? diffuseImage : roughImage;
+    const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
+    return makePass(gatherPass, gatherSet, gather_light_comp, {&diffuse, &rough}, {effects.diffuse ? 1u : 0u, effects.rough ? 1u : 0u});
+}
+
 Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, const Desc& desc)
 {
-    if (desc.width < 1 || desc.height < 1 || desc.width > gpu.properties.limits.maxImageDimension2D ||
-        desc.height > gpu.properties.limits.maxImageDimension2D)
-        return Error{ErrorCode::badArgument, "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) +
-                                                 " is outside 1.." + std::to_string(gpu.properties.limits.maxImageDimension2D) +
-                                                 " pixels a side"};
+    if (const std::string problem = problemOf(gpu, field, desc); !problem.empty()) return Error{ErrorCode::badArgument, problem};
     IndirectLight made;
     made.gpu = &gpu;
     made.field = &field;
@@ -39,82 +111,75 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
     auto frame = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
     if (!frame) return frame.error();
     made.frame = std::move(*frame);
-
-    auto image = [&](GpuImage& target, VkFormat format, const char* what) -> Status
+    const IndirectEffects& effects = desc.effects;
+    const bool any = effects.diffuse || effects.rough || effects.glossy || effects.mirror;
+    if (effects.tiles && any)
     {
-        ImageDesc imageDesc;
-        imageDesc.format = format;
-        imageDesc.width = desc.width;
-        imageDesc.height = desc.height;
-        imageDesc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-        auto result = gpu.makeImage(imageDesc, what);
-        if (!result) return result.error();
-        target = std::move(*result);
-        return gpu.submit(
-            [&](VkCommandBuffer cmd)
-            {
-                transition(gpu, cmd, target,
-                           {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE,
-                            VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
-            });
-    };
-    if (desc.effects.glossy)
-    {
-        if (auto s = image(made.noisyGlossy, kLightFormat, "glossy light"); !s) return s.error();
-        if (auto s = image(made.countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s.error();
-        const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
-        if (auto s = made.makePass(made.glossyPass, made.glossySet, shader, 2); !s) return s.error();
-        made.glossySet.write(4, made.noisyGlossy.view(), VK_IMAGE_LAYOUT_GENERAL);
-        made.glossySet.write(5, made.countImage.view(), VK_IMAGE_LAYOUT_GENERAL);
-        if (desc.effects.denoise)
-        {
-            if (auto s = image(made.smoothGlossy, kLightFormat, "denoised glossy light"); !s) return s.error();
-            auto denoiser = Denoiser::create(gpu, field.layout(), made.frame, made.noisyGlossy, made.smoothGlossy);
-            if (!denoiser) return denoiser.error();
-            made.denoiser = std::move(*denoiser);
-        }
+        auto tiles = TileList::create(gpu, made.frame, desc.width, desc.height);
+        if (!tiles) return tiles.error();
+        made.tileList = std::make_unique<TileList>(std::move(*tiles));
     }
-    if (desc.effects.diffuse)
-    {
-        if (auto s = image(made.diffuseImage, kLightFormat, "diffuse light"); !s) return s.error();
-        if (auto s = made.makePass(made.diffusePass, made.diffuseSet, gather_diffuse_comp, 1); !s) return s.error();
-        made.diffuseSet.write(4, made.diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
-    }
+    if (effects.diffuse || effects.rough)
+        if (auto s = made.makeGather(); !s) return s.error();
+    if (effects.mirror)
+        if (auto s = made.makeTrace(gpu::kTermMirror, made.mirrorImage, made.mirrorPass, made.mirrorSet); !s) return s.error();
+    if (!effects.glossy) return made;
+    if (auto s = made.makeTrace(gpu::kTermGlossy, made.noisyGlossy, made.glossyPass, made.glossySet); !s) return s.error();
+    if (!effects.denoise) return made;
+    if (auto s = made.makeImage(made.smoothGlossy, kLightFormat, "denoised glossy light"); !s) return s.error();
+    auto denoiser = Denoiser::create(gpu, {field.layout(), gpu::kTermGlossy, true, made.tiles(), desc.width, desc.height}, made.frame,
+                                     made.noisyGlossy, made.smoothGlossy);
+    if (!denoiser) return denoiser.error();
+    made.denoiser = std::move(*denoiser);
     return made;
 }
 
 void IndirectLight::setInputs(const FrameInputs& inputs)
 {
-    if (glossyPass) writeInputs(glossySet, inputs);
-    if (diffusePass) writeInputs(diffuseSet, inputs);
+    for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet}, {&mirrorPass, &mirrorSet}, {&gatherPass, &gatherSet}})
+        if (*pass) writeInputs(*set, inputs);
+    if (tileList) tileList->setInputs(inputs);
     if (denoiser) denoiser.setInputs(inputs);
 }
 
 void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
 {
-    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute,
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT); // the frame before may still read what this one writes
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
-    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
-    auto dispatch = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name)
+    if (countImage)
+    {
+        const VkClearColorValue nothing{.uint32 = {gpu::kNoProbe, 0, 0, 0}};
+        const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
+    }
+    memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    const auto timed = [&](const char* name, auto&& work)
     {
         if (timer) timer->begin(cmd, name);
-        const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
-        pipeline.bind(cmd, sets);
-        gpu->vk.CmdDispatch(cmd, (desc.width + 7) / 8, (desc.height + 7) / 8, 1);
+        work();
         if (timer) timer->end(cmd);
     };
-    if (glossyPass) dispatch(glossyPass, glossySet, "glossy trace");
-    if (diffusePass) dispatch(diffusePass, diffuseSet, "diffuse gather");
-    if (denoiser)
+    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, uint32_t list, const char* name)
     {
-        if (timer) timer->begin(cmd, "denoise");
-        denoiser.record(cmd, field->descriptorSet(), desc.width, desc.height, true);
-        if (timer) timer->end(cmd);
-    }
+        if (!pipeline) return;
+        timed(name,
+              [&]
+              {
+                  const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
+                  pipeline.bind(cmd, sets);
+                  dispatchTiles(*gpu, cmd, tiles(), list, desc.width, desc.height);
+              });
+    };
+    if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
+    pass(gatherPass, gatherSet, gpu::kListGathered, "gather light");
+    pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace");
+    if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    pass(mirrorPass, mirrorSet, gpu::kTermMirror, "mirror trace");
+    if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field->descriptorSet()); });
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }
@@ -122,8 +187,8 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
 uint64_t IndirectLight::deviceBytes() const
 {
     const uint64_t pixels = uint64_t(desc.width) * desc.height;
-    uint64_t bytes = frame.size();
-    for (const GpuImage* image : {&noisyGlossy, &smoothGlossy, &countImage, &diffuseImage})
+    uint64_t bytes = frame.size() + brdfTable.size() + (tileList ? tileList->buffer().size() : 0);
+    for (const GpuImage* image : {&noisyGlossy, &smoothGlossy, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += 16 * pixels;
     return bytes;
 }

@@ -1,20 +1,15 @@
 #pragma once
 
+#include <memory>
+
 #include "runtime/denoiser.h"
+#include "runtime/effect_plan.h"
 #include "runtime/frame_inputs.h"
 #include "runtime/light_field.h"
 #include "shaders/shared/frame.h"
 
 namespace sconce
 {
-
-/// Which of the indirect terms a frame has; what is off has no pipeline, no image and no dispatch.
-struct IndirectEffects
-{
-    bool diffuse = true;
-    bool glossy = true;
-    bool denoise = true; // of the glossy term
-};
 
 /// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
 class IndirectLight
@@ -24,35 +19,48 @@ public:
     {
         uint32_t width = 0, height = 0; // pixels, 1..16384
         IndirectEffects effects;
-        Spirv glossyShader; // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
+        bool counts = false; // write what each pixel's ray cost: an image of 16 bytes a pixel
+        Spirv glossyShader;  // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
     };
+    /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, deviceFailure.
     static Result<IndirectLight> create(Gpu& gpu, const LightField& field, const Desc& desc);
 
     /// Binds the G-buffer; before the first record and whenever its views change. Not while the GPU runs a recorded frame.
     void setInputs(const FrameInputs& inputs);
     /// Ends with the barrier that lets any later stage read the outputs (layout GENERAL).
-    /// @param timer  optional; scopes "glossy trace", "diffuse gather", "denoise"
+    /// @param timer  optional; scopes "classify tiles", "gather light", "glossy trace", "mirror trace", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
-    // Outputs, RGBA32F; empty when the effect is off.
-    const GpuImage& glossy() const { return smoothGlossy ? smoothGlossy : noisyGlossy; } // rgb radiance reflected to the eye, BRDF included
+    // Outputs, RGBA32F; empty when the effect is off. An image holds values where a pixel has the term (shaders/gbuffer_read.glsl, termsOf)
+    // and anything elsewhere; shaders/compose.comp shows how they make a picture.
     const GpuImage& diffuse() const
     {
         return diffuseImage;
-    } // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light straight from emitters or sky
-    const GpuImage& counts() const { return countImage; } // RGBA32UI: probe, hand-offs, reads, unknown rays; of the glossy trace
+    }                                                    // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light
+                                                         // straight from emitters or sky
+    const GpuImage& rough() const { return roughImage; } // rgb radiance reflected to the eye, BRDF included; as the next two
+    const GpuImage& glossy() const { return smoothGlossy ? smoothGlossy : noisyGlossy; }
+    const GpuImage& mirror() const { return mirrorImage; }
+    const GpuImage& counts() const { return countImage; } // RGBA32UI: probe, hand-offs, reads, unknown rays; of the traced terms
+    /// The tiles of each term, for the host's own passes over the terms; null when passes run over the whole picture.
+    const TileList* tiles() const { return tileList.get(); }
     uint64_t deviceBytes() const;
 
 private:
     IndirectLight() = default;
-    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, uint32_t storageImages);
+    Status makeImage(GpuImage& target, VkFormat format, const char* what);
+    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
+                    std::initializer_list<uint32_t> constants);
+    Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
+    Status makeGather();
     Gpu* gpu = nullptr;
     const LightField* field = nullptr;
     Desc desc;
-    Buffer frame;
-    GpuImage noisyGlossy, smoothGlossy, countImage, diffuseImage;
-    DescriptorSet glossySet, diffuseSet;
-    Pipeline glossyPass, diffusePass;
+    Buffer frame, brdfTable;
+    GpuImage noisyGlossy, smoothGlossy, mirrorImage, countImage, diffuseImage, roughImage;
+    std::unique_ptr<TileList> tileList; // its address is what denoisers keep
+    DescriptorSet glossySet, mirrorSet, gatherSet;
+    Pipeline glossyPass, mirrorPass, gatherPass;
     Denoiser denoiser;
 };
 

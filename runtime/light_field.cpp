@@ -19,8 +19,9 @@ struct FieldBlock // as shaders/light_field.glsl declares it
     VkDeviceAddress distance;
     VkDeviceAddress radiance;
     VkDeviceAddress irradiance;
+    VkDeviceAddress prefiltered;
 };
-static_assert(sizeof(FieldBlock) == 248);
+static_assert(sizeof(FieldBlock) == 256);
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
@@ -94,14 +95,17 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
         std::span<const uint32_t> words;
         const char* what;
     };
-    for (const Part& part : {Part{made.distance, field.distance, "probe distances"}, Part{made.radiance, field.radiance, "probe radiance"},
-                             Part{made.irradiance, field.irradiance, "probe irradiance"}})
+    for (const Part& part :
+         {Part{made.distance, field.distance, "probe distances"}, Part{made.radiance, field.radiance, "probe radiance"},
+          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"}})
     {
+        if (part.words.empty()) continue;
         auto buffer = gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
         if (!buffer) return buffer.error();
         part.buffer = std::move(*buffer);
         made.bytes += part.buffer.size();
     }
+    made.radianceHeld = !field.radiance.empty();
     auto probes = gpu.makeBufferWith<gpu::ProbeHeader>(field.probes, 0, "probe headers");
     if (!probes) return probes.error();
     made.probes = std::move(*probes);
@@ -132,13 +136,13 @@ Status LightField::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address()};
+    const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 
-std::array<uint32_t, 1> LightField::constants() const
+std::array<uint32_t, 2> LightField::constants() const
 {
-    return {readsFarBounds ? 1u : 0u};
+    return {readsFarBounds ? 1u : 0u, radianceHeld ? 1u : 0u};
 }
 
 Result<RayTracer> RayTracer::create(Gpu& gpu, const LightField& field, Spirv shader)

@@ -22,8 +22,11 @@ public:
     VkDescriptorSet descriptorSet() const { return set.handle(); }
     const gpu::LightFieldInfo& info() const { return fieldInfo; }
     uint64_t deviceBytes() const { return bytes; }
-    /// Values of the constant ids of a pass that includes shaders/light_field.glsl: `farBounds` is fixed in a pass when it is made.
-    std::array<uint32_t, 1> constants() const;
+    /// Values of the first constant ids of a pass that includes shaders/light_field.glsl: `farBounds`, and whether it holds radiance, are
+    /// fixed in a pass when it is made.
+    std::array<uint32_t, 2> constants() const;
+    bool holdsRadiance() const { return radianceHeld; }              // as rays need it
+    bool holdsPrefiltered() const { return prefiltered.size() > 0; } // as rough reflections need it
     /// Takes effect for command buffers submitted after it. Not while the GPU reads the field.
     Status setQuality(const Quality& quality);
 
@@ -31,8 +34,8 @@ private:
     LightField() = default;
     Gpu* gpu = nullptr;
     gpu::LightFieldInfo fieldInfo{};
-    Buffer block, probes, distance, radiance, irradiance;
-    bool readsFarBounds = false;
+    Buffer block, probes, distance, radiance, irradiance, prefiltered;
+    bool readsFarBounds = false, radianceHeld = false;
     GpuImage octree;
     DescriptorSet set;
     uint64_t bytes = 0;

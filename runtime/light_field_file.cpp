@@ -82,10 +82,11 @@ enum Section : uint32_t
     irradiance,
     octree,
     octreeTexels,
+    prefiltered, // since version 3
     sectionCount
 };
-constexpr const char* kSectionNames[sectionCount] = {"meta",     "info",       "probes", "distance",
-                                                     "radiance", "irradiance", "octree", "octree texels"};
+constexpr const char* kSectionNames[sectionCount] = {"meta",       "info",   "probes",        "distance",   "radiance",
+                                                     "irradiance", "octree", "octree texels", "prefiltered"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader
@@ -144,11 +145,15 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         n * kIrradianceWordsPerProbe * sizeof(uint32_t),
         sizeof(OctreeHeader),
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
+        product({n, gpu::kPrefilteredWords, 4}),
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
-        if (expected[section] != rawBytes[section])
+    {
+        const bool optional = section == radiance || section == prefiltered; // what no surface of the scene calls for is left out
+        if (expected[section] != rawBytes[section] && !(optional && rawBytes[section] == 0))
             return std::string("its section '") + kSectionNames[section] + "' has " + std::to_string(rawBytes[section]) +
                    " bytes where its info calls for another size";
+    }
     return {};
 }
 
@@ -389,12 +394,13 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
     if (header.headerChecksum != checksum(bytesOf(header).first(offsetof(Header, headerChecksum))))
         return damaged("header", 0, sizeof(Header), "its header does not match its checksum");
     report.version = header.version;
-    if (header.version != kFieldFileVersion)
+    if (header.version < kOldestFieldFileVersion || header.version > kFieldFileVersion)
     {
         row("header", 0, sizeof(Header), "format version " + std::to_string(header.version));
         return Error{ErrorCode::badInput,
                      "Light field '" + reader.name + "' has format version " + std::to_string(header.version) +
-                         "; this program reads version " + std::to_string(kFieldFileVersion) +
+                         "; this program reads versions " + std::to_string(kOldestFieldFileVersion) + " to " +
+                         std::to_string(kFieldFileVersion) +
                          (header.version > kFieldFileVersion ? ". Use a newer Sconce, or bake it again." : ". Bake it again.")};
     }
     if (header.fileBytes != reader.size)
@@ -471,6 +477,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
         std::as_bytes(std::span(field.irradiance)),
         bytesOf(treeHeader),
         std::as_bytes(std::span(field.octree.texels)),
+        std::as_bytes(std::span(field.prefiltered)),
     };
     uint64_t rawBytes[sectionCount], blockCount = 0;
     for (uint32_t section = 0; section < sectionCount; ++section)
@@ -538,6 +545,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     field.radiance.resize(rawBytes[radiance] / sizeof(uint32_t));
     field.irradiance.resize(rawBytes[irradiance] / sizeof(uint32_t));
     field.octree.texels.resize(rawBytes[octreeTexels] / sizeof(uint16_t));
+    field.prefiltered.resize(rawBytes[prefiltered] / sizeof(uint32_t));
     const std::pair<Section, std::span<std::byte>> parts[] = {
         {meta, std::as_writable_bytes(std::span(text))},
         {probes, std::as_writable_bytes(std::span(field.probes))},
@@ -545,6 +553,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {radiance, std::as_writable_bytes(std::span(field.radiance))},
         {irradiance, std::as_writable_bytes(std::span(field.irradiance))},
         {octreeTexels, std::as_writable_bytes(std::span(field.octree.texels))},
+        {prefiltered, std::as_writable_bytes(std::span(field.prefiltered))},
     };
     for (const auto& [section, raw] : parts)
         if (Status status = readInto(section, raw); !status) return status.error();

@@ -11,8 +11,9 @@
 namespace sconce
 {
 
-/// The .sconce format's version that is written; any other is refused with a sentence. docs/formats.md describes the bytes.
-inline constexpr uint32_t kFieldFileVersion = 2;
+/// The .sconce format's version that is written, and the oldest that is read; others are refused with a sentence. Version 3 added the
+/// section `prefiltered` and lets `radiance` be empty.
+inline constexpr uint32_t kFieldFileVersion = 3, kOldestFieldFileVersion = 2;
 
 /// Writes a light field: whole under its name or not at all; the same field gives the same bytes.
 /// Errors: badArgument (arrays disagree with info), fileError (names file and reason).

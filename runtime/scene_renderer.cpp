@@ -70,14 +70,14 @@ mat4 worldFromClip(const Camera& camera, const CameraBasis& basis, const gpu::Li
 } // namespace
 
 Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
-                               uint32_t pushBytes, VkDescriptorSetLayout first)
+                               uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const uint32_t> constants)
 {
     auto made = makeFrameSet(gpu, frameBlock, extra);
     if (!made) return made.error();
     set = std::move(*made);
     writeInputs(set, gBuffer);
     const VkDescriptorSetLayout layouts[] = {first, set.layout()};
-    auto built = Pipeline::compute(gpu, shader, layouts, pushBytes);
+    auto built = Pipeline::compute(gpu, shader, layouts, pushBytes, constants);
     if (!built) return built.error();
     pipeline = std::move(*built);
     return success();
@@ -86,7 +86,9 @@ Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
 Status SceneRenderer::make()
 {
     const IndirectEffects& effects = settings.effects;
-    auto light = IndirectLight::create(gpu, field, {settings.width, settings.height, effects, settings.glossyShader});
+    const bool rays = effects.glossy || effects.mirror;
+    auto light =
+        IndirectLight::create(gpu, field, {settings.width, settings.height, effects, settings.layers && rays, settings.glossyShader});
     if (!light) return light.error();
     indirect.emplace(std::move(*light));
 
@@ -108,14 +110,13 @@ Status SceneRenderer::make()
                                 {&emission, "emission"},
                                 {&geometricNormal, "geometric normals"}})
         if (auto s = image(*target, kGBufferFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
-    for (auto [target, what] : {std::pair{&direct, "direct light"},
-                                {&beauty, "picture"},
-                                {&black, "black, for an effect that is off"},
-                                {&noisyDiffuse, "diffuse light"},
-                                {&smoothDiffuse, "denoised diffuse light"}})
+    for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
+                                        {&beauty, "picture", true},
+                                        {&smoothDiffuse, "denoised diffuse light", effects.diffuse},
+                                        {&diffuseLayer, "diffuse layer", settings.layers && effects.diffuse},
+                                        {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
     {
-        if (target == &black && effects.diffuse && effects.glossy) continue;
-        if ((target == &noisyDiffuse || target == &smoothDiffuse) && !effects.diffuse) continue;
+        if (!wanted) continue;
         if (auto s = image(*target, kLightFormat, VK_IMAGE_USAGE_STORAGE_BIT, what); !s) return s;
         auto status = gpu.submit(
             [&](VkCommandBuffer cmd)
@@ -153,33 +154,74 @@ Status SceneRenderer::make()
 
     const DescriptorSet::Binding directBindings[] = {
         {4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {5, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(DirectPush), scene.layout()); !s) return s;
+    if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(DirectPush), scene.layout(), {}); !s) return s;
     directSet.write(4, emission.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(5, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(6, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
 
     if (effects.diffuse)
+        if (auto s = makeDiffuse(); !s) return s;
+    return makeCompose();
+}
+
+bool SceneRenderer::hasAreaLight() const
+{
+    const gpu::LightsHeader& lights = scene.lights().header;
+    return settings.areaLights && lights.emitterCount + lights.skyCount > 0;
+}
+
+/// Light of emitters and sky, and the filter over all diffuse light.
+Status SceneRenderer::makeDiffuse()
+{
+    if (hasAreaLight())
     {
-        const DescriptorSet::Binding areaBindings[] = {
-            {4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-        if (auto s = makePass(areaPass, areaSet, area_light_comp, areaBindings, sizeof(AreaPush), scene.layout()); !s) return s;
+        const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                   {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                                   {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+        const uint32_t tiled = indirect->tiles() ? 1u : 0u;
+        if (auto s = makePass(areaPass, areaSet, area_light_comp, bindings, sizeof(AreaPush), scene.layout(), std::span(&tiled, 1)); !s)
+            return s;
         areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
-        areaSet.write(6, noisyDiffuse.view(), VK_IMAGE_LAYOUT_GENERAL);
-        auto made = Denoiser::create(gpu, scene.layout(), frameBlock, noisyDiffuse, smoothDiffuse);
-        if (!made) return made.error();
-        denoiser = std::move(*made);
-        denoiser.setInputs(gBuffer);
+        areaSet.write(kTileBinding, indirect->tiles() ? indirect->tiles()->buffer() : frameBlock);
     }
-    const DescriptorSet::Binding composeBindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                                                      {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                                                      {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                                                      {7, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    if (auto s = makePass(composePass, composeSet, compose_comp, composeBindings, sizeof(uint32_t), scene.layout()); !s) return s;
-    composeSet.write(4, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
-    composeSet.write(5, (effects.glossy ? indirect->glossy() : black).view(), VK_IMAGE_LAYOUT_GENERAL);
-    composeSet.write(6, (effects.diffuse ? smoothDiffuse : black).view(), VK_IMAGE_LAYOUT_GENERAL);
-    composeSet.write(7, beauty.view(), VK_IMAGE_LAYOUT_GENERAL);
+    const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, indirect->tiles(), settings.width, settings.height};
+    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->diffuse(), smoothDiffuse);
+    if (!made) return made.error();
+    denoiser = std::move(*made);
+    denoiser.setInputs(gBuffer);
+    return success();
+}
+
+Status SceneRenderer::makeCompose()
+{
+    const IndirectEffects& effects = settings.effects;
+    struct Shown
+    {
+        const GpuImage& image;
+        bool made;
+    };
+    // What is not made is not read: anything may be bound in its place.
+    const Shown images[] = {{direct, true},
+                            {smoothDiffuse, effects.diffuse},
+                            {indirect->rough(), effects.rough},
+                            {indirect->glossy(), effects.glossy},
+                            {indirect->mirror(), effects.mirror},
+                            {beauty, true},
+                            {diffuseLayer, bool(diffuseLayer)},
+                            {glossyLayer, bool(glossyLayer)}};
+    std::vector<DescriptorSet::Binding> bindings;
+    for (uint32_t i = 0; i < std::size(images); ++i) bindings.push_back({4 + i, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    uint32_t made = 0;
+    for (const auto& [term, on] : {std::pair{gpu::kTermDiffuse, effects.diffuse},
+                                   {gpu::kTermRough, effects.rough},
+                                   {gpu::kTermGlossy, effects.glossy},
+                                   {gpu::kTermMirror, effects.mirror}})
+        made |= on ? 1u << term : 0u;
+    const uint32_t constants[] = {made, diffuseLayer ? 1u : 0u, glossyLayer ? 1u : 0u};
+    if (auto s = makePass(composePass, composeSet, compose_comp, bindings, 0, scene.layout(), constants); !s) return s;
+    for (uint32_t i = 0; i < std::size(images); ++i)
+        composeSet.write(4 + i, (images[i].made ? images[i].image : beauty).view(), VK_IMAGE_LAYOUT_GENERAL);
     return success();
 }
 
@@ -259,6 +301,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     view.seed = seed;
     view.size = {settings.width, settings.height};
     view.glossyRays = settings.glossyRays;
+    view.raysBelow = settings.raysBelow;
     view.normalOffset = settings.normalOffset * space.diagonal * space.scale;
 
     if (timer) timer->begin(cmd, "G-buffer");
@@ -282,25 +325,30 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 
     indirect->record(cmd, view, timer);
 
-    auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, const auto& push, const char* name)
+    const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name)
     {
         memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         if (timer) timer->begin(cmd, name);
         const VkDescriptorSet sets[] = {scene.descriptorSet(), set.handle()};
         pipeline.bind(cmd, sets);
-        pipeline.push(cmd, push);
-        gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
-        if (timer) timer->end(cmd);
     };
-    if (settings.effects.diffuse)
+    if (areaPass)
     {
-        pass(areaPass, areaSet, AreaPush{space.origin, space.scale, settings.areaSamples}, "area light");
-        if (timer) timer->begin(cmd, "diffuse denoise");
-        denoiser.record(cmd, scene.descriptorSet(), settings.width, settings.height, false);
+        begin(areaPass, areaSet, "area light");
+        areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
+        dispatchTiles(gpu, cmd, indirect->tiles(), gpu::kTermDiffuse, settings.width, settings.height);
         if (timer) timer->end(cmd);
     }
-    pass(composePass, composeSet, uint32_t(settings.effects.diffuse ? 1u : 0u) | (settings.effects.glossy ? 2u : 0u), "compose");
+    if (denoiser)
+    {
+        if (timer) timer->begin(cmd, "diffuse denoise");
+        denoiser.record(cmd, scene.descriptorSet());
+        if (timer) timer->end(cmd);
+    }
+    begin(composePass, composeSet, "compose");
+    gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
+    if (timer) timer->end(cmd);
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }
@@ -348,9 +396,15 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
     return values;
 }
 
+uint64_t SceneRenderer::deviceBytes() const
+{
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    return indirect->deviceBytes() + (smoothDiffuse ? 16 * pixels : 0);
+}
+
 Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
 {
-    auto timer = GpuTimer::create(gpu, 12);
+    auto timer = GpuTimer::create(gpu, 16);
     if (!timer) return timer.error();
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
@@ -381,11 +435,11 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
     frame.diffuseIndirect.assign(pixels, vec3(0.0f));
     frame.glossyIndirect.assign(pixels, vec3(0.0f));
     frame.counts.assign(pixels, glm::uvec4(gpu::kNoProbe, 0, 0, 0));
-    if (settings.effects.diffuse)
-        if (auto s = colors(frame.diffuseIndirect, smoothDiffuse, general); !s) return s.error();
-    if (settings.effects.glossy)
+    for (const auto& [layer, target] : {std::pair{&diffuseLayer, &frame.diffuseIndirect}, {&glossyLayer, &frame.glossyIndirect}})
+        if (*layer)
+            if (auto s = colors(*target, *layer, general); !s) return s.error();
+    if (indirect->counts())
     {
-        if (auto s = colors(frame.glossyIndirect, indirect->glossy(), general); !s) return s.error();
         auto counts = readBack(indirect->counts(), general);
         if (!counts) return counts.error();
         std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));

@@ -15,8 +15,11 @@ struct RenderSettings
     uint32_t width = 960, height = 540; // pixels, 1..16384
     uint32_t glossyRays = 1;            // rays a pixel, 1..256; time of the trace grows in proportion
     IndirectEffects effects;
-    std::optional<float> roughness; // [0,1]: every surface has this roughness (the benchmark of both papers)
-    uint32_t areaSamples = 8;       // samples of the emitters, and as many of the sky, a pixel, 1..1024; noise falls with the root
+    bool areaLights = true;            // emitters and sky on diffuse surfaces, where the scene has them
+    bool layers = true;                // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
+    float raysBelow = gpu::kRaysBelow; // [0,1] roughness: reflections below it are traced, above it read from prefiltered radiance
+    std::optional<float> roughness;    // [0,1]: every surface has this roughness (the benchmark of both papers)
+    uint32_t areaSamples = 8;          // samples of the emitters, and as many of the sky, a pixel, 1..1024; noise falls with the root
     uint32_t seed = 1;
     Spirv glossyShader;         // as in IndirectLight::Desc
     float normalOffset = 1e-4f; // share of the scene's diagonal that rays start off their surface
@@ -26,7 +29,7 @@ struct RenderSettings
 struct RenderedFrame
 {
     uint32_t width = 0, height = 0;
-    std::vector<vec3> beauty, direct, diffuseIndirect, glossyIndirect; // radiance to the eye, W/(m^2 sr)
+    std::vector<vec3> beauty, direct, diffuseIndirect, glossyIndirect; // radiance to the eye, W/(m^2 sr); the last three 0 without layers
     std::vector<float> depth;                                          // metres along the view axis; 0: nothing
     std::vector<vec3> normal;                                          // shading normal on the viewer's side; 0: nothing
     std::vector<vec3> albedo;                                          // base colour, linear
@@ -44,6 +47,8 @@ public:
     void record(VkCommandBuffer cmd, const Camera& camera, uint32_t seed, GpuTimer* timer);
     /// Records, submits, waits and reads every picture back.
     Result<RenderedFrame> render(const Camera& camera);
+    /// Bytes of the images and buffers of indirect light, as many as its effects call for.
+    uint64_t deviceBytes() const;
 
 private:
     SceneRenderer(Gpu& device, const DeviceScene& lit, const LightField& asked, const RenderSettings& wanted)
@@ -52,7 +57,10 @@ private:
     }
     Status make();
     Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra, uint32_t pushBytes,
-                    VkDescriptorSetLayout first);
+                    VkDescriptorSetLayout first, std::span<const uint32_t> constants);
+    Status makeDiffuse();
+    Status makeCompose();
+    bool hasAreaLight() const;
     void drawGBuffer(VkCommandBuffer cmd, const SceneView& view);
     Result<std::vector<glm::vec4>> readBack(const GpuImage& image, VkImageLayout layout);
 
@@ -60,7 +68,7 @@ private:
     const DeviceScene& scene;
     const LightField& field;
     RenderSettings settings;
-    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, black, noisyDiffuse, smoothDiffuse;
+    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, smoothDiffuse, diffuseLayer, glossyLayer;
     Pipeline gBufferPass, directPass, areaPass, composePass;
     DescriptorSet directSet, areaSet, composeSet;
     Denoiser denoiser;

@@ -31,6 +31,9 @@ template <class Real> struct LightFieldTwin
     static constexpr uint kChartCube = gpu::kChartCube;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
+    static constexpr uint kPrefilteredSize = gpu::kPrefilteredSize;
+    static constexpr uint kPrefilteredWords = gpu::kPrefilteredWords;
+    static constexpr int kPrefilteredLevels = gpu::kPrefilteredLevels;
 
     explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data)
     {
@@ -50,6 +53,10 @@ template <class Real> struct LightFieldTwin
     {
         return quality.farBounds != 0;
     }
+    bool holdsRadiance() const
+    {
+        return !source.radiance.empty();
+    }
     const ProbeHeader& probeHeader(uint probe) const
     {
         return source.probes[probe];
@@ -65,6 +72,10 @@ template <class Real> struct LightFieldTwin
     uint irradianceWord(uint index) const
     {
         return source.irradiance[index];
+    }
+    uint prefilteredWord(uint index) const
+    {
+        return source.prefiltered[index];
     }
     uvec4 octreeTexel(ivec3 p) const
     {
@@ -83,6 +94,8 @@ template <class Real> struct LightFieldTwin
 #include "shaders/shared/face_march.h"
 
 #include "shaders/shared/probe_trace.h"
+
+#include "shaders/shared/prefiltered.h"
 
 #include "shaders/shared/light_lookup.h"
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "shaders/shared/brdf.h"
+
 namespace sconce
 {
 
@@ -67,16 +69,17 @@ void checkTopology(const Scene& scene, SceneReport& report)
     report.duplicateTriangles = uint64_t(faces.end() - std::unique(faces.begin(), faces.end()));
 }
 
-float smoothest(const Scene& scene, const Material& material)
+/// Least and greatest roughness of a material's texels.
+std::pair<float, float> roughnessRange(const Scene& scene, const Material& material)
 {
-    if (material.metallicRoughnessTexture.image < 0) return material.roughness;
+    if (material.metallicRoughnessTexture.image < 0) return {material.roughness, material.roughness};
     const Image& image = scene.images[size_t(material.metallicRoughnessTexture.image)];
-    uint8_t low = 255;
-    for (size_t i = 1; i < image.rgba.size(); i += 4) low = std::min(low, image.rgba[i]);
-    return material.roughness * float(low) / 255.0f;
+    uint8_t low = 255, high = 0;
+    for (size_t i = 1; i < image.rgba.size(); i += 4) low = std::min(low, image.rgba[i]), high = std::max(high, image.rgba[i]);
+    return {material.roughness * float(low) / 255.0f, material.roughness * float(high) / 255.0f};
 }
 
-void countMaterials(const Scene& scene, SceneReport& report)
+void countMaterials(const Scene& scene, float raysBelow, SceneReport& report)
 {
     std::vector<bool> used(scene.materials.size(), false);
     for (const uint32_t material : scene.triangleMaterial) used[material] = true;
@@ -84,10 +87,11 @@ void countMaterials(const Scene& scene, SceneReport& report)
     {
         if (!used[i]) continue;
         const Material& material = scene.materials[i];
-        const float roughness = smoothest(scene, material);
+        const auto [smoothest, roughest] = roughnessRange(scene, material);
         ++report.usedMaterials;
-        report.glossyMaterials += roughness < kGlossyBelow;
-        report.mirrorMaterials += roughness < kMirrorBelow;
+        report.mirrorMaterials += isMirror(smoothest);
+        report.glossyMaterials += smoothest < raysBelow + gpu::kRaysBlend && !isMirror(roughest);
+        report.roughMaterials += roughest > raysBelow - gpu::kRaysBlend;
         report.metalMaterials += material.metallic >= 0.5f;
         report.maskedMaterials += material.alphaCutoff > 0.0f;
         report.doubleSidedMaterials += material.doubleSided;
@@ -141,8 +145,12 @@ void addFindings(const Scene& scene, SceneReport& report)
     for (const std::string& warning : scene.warnings) find("import", Severity::info, warning);
 }
 
-void addEffects(const Scene& scene, SceneReport& report)
+void addEffects(const Scene& scene, float raysBelow, SceneReport& report)
 {
+    const auto materials = [](uint64_t n, const std::string& rest) { return count(n, "material has", "materials have") + rest; };
+    char traced[64], read[64];
+    std::snprintf(traced, sizeof traced, " a roughness from 0.02 to %.4g.", raysBelow + gpu::kRaysBlend);
+    std::snprintf(read, sizeof read, " a roughness above %.4g.", raysBelow - gpu::kRaysBlend);
     const auto add = [&](const char* name, bool called, std::string yes, std::string no) {
         report.effects.push_back({name, called, called ? yes : no});
     };
@@ -159,10 +167,9 @@ void addEffects(const Scene& scene, SceneReport& report)
         diffuse += scene.materials[material].metallic < 1.0f && vec3(scene.materials[material].baseColor) != vec3(0.0f);
     add("diffuse", diffuse > 0, count(diffuse, "triangle reflects", "triangles reflect") + " diffusely.",
         "No triangle reflects diffusely.");
-    add("glossy", report.glossyMaterials > report.mirrorMaterials,
-        count(report.glossyMaterials - report.mirrorMaterials, "material has", "materials have") + " a roughness from 0.02 to 0.4.",
-        "No material has a roughness from 0.02 to 0.4.");
-    add("mirror", report.mirrorMaterials > 0, count(report.mirrorMaterials, "material has", "materials have") + " a roughness below 0.02.",
+    add("rough", report.roughMaterials > 0, materials(report.roughMaterials, read), std::string("No material has") + read);
+    add("glossy", report.glossyMaterials > 0, materials(report.glossyMaterials, traced), std::string("No material has") + traced);
+    add("mirror", report.mirrorMaterials > 0, materials(report.mirrorMaterials, " a roughness below 0.02."),
         "No material has a roughness below 0.02.");
     add("masked", report.maskedMaterials > 0, count(report.maskedMaterials, "material is", "materials are") + " cut out by alpha.",
         "No material is cut out by alpha.");
@@ -173,7 +180,7 @@ void addEffects(const Scene& scene, SceneReport& report)
 
 } // namespace
 
-SceneReport checkScene(const Scene& scene)
+SceneReport checkScene(const Scene& scene, float raysBelow)
 {
     SceneReport report;
     report.triangles = scene.triangles.size();
@@ -192,11 +199,11 @@ SceneReport checkScene(const Scene& scene)
         return report;
     }
     report.bounds = scene.bounds();
-    countMaterials(scene, report);
+    countMaterials(scene, raysBelow, report);
     measureTriangles(scene, report);
     checkTopology(scene, report);
     addFindings(scene, report);
-    addEffects(scene, report);
+    addEffects(scene, raysBelow, report);
     return report;
 }
 

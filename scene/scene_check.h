@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "shaders/shared/frame.h"
 
 namespace sconce
 {
@@ -26,13 +27,10 @@ struct Finding
 /// One lighting phenomenon and whether the scene calls for it; what isn't called for costs nothing later (EffectPlan).
 struct SceneEffect
 {
-    std::string name; // sun, punctual, emitters, sky, diffuse, glossy, mirror, masked, thin-two-sided
+    std::string name; // sun, punctual, emitters, sky, diffuse, rough, glossy, mirror, masked, thin-two-sided
     bool called = false;
     std::string why; // a sentence
 };
-
-inline constexpr float kGlossyBelow = 0.4f;  // roughness
-inline constexpr float kMirrorBelow = 0.02f; // roughness
 
 struct SceneReport
 {
@@ -41,8 +39,10 @@ struct SceneReport
     uint64_t emissiveTriangles = 0;
     double emissiveArea = 0.0; // m^2
     double area = 0.0;         // m^2, all triangles
-    // Materials that some triangle uses. Mirrors count as glossy, too; textured roughness is judged by its smoothest texel.
-    uint64_t usedMaterials = 0, glossyMaterials = 0, mirrorMaterials = 0, metalMaterials = 0, maskedMaterials = 0, doubleSidedMaterials = 0;
+    // Materials that some triangle uses. A material may be rough, glossy and a mirror at once: textured roughness is
+    // judged by its smoothest and its roughest texel.
+    uint64_t usedMaterials = 0, roughMaterials = 0, glossyMaterials = 0, mirrorMaterials = 0, metalMaterials = 0, maskedMaterials = 0,
+             doubleSidedMaterials = 0;
     uint64_t edges = 0, openEdges = 0; // after welding equal positions; open: one triangle only
     double openEdgeShare = 0.0;        // of edges, [0,1]
     uint64_t degenerateTriangles = 0, duplicateTriangles = 0;
@@ -53,6 +53,7 @@ struct SceneReport
 
 /// What is in a scene, what is wrong with it, and which effects it calls for and why. Also for scenes that validate() refuses: then only
 /// the counts of the arrays and the finding `invalid` are filled. Cost: O(n log n) of the triangles.
-SceneReport checkScene(const Scene& scene);
+/// @param raysBelow  roughness below which reflections are traced; gpu::FrameView::raysBelow
+SceneReport checkScene(const Scene& scene, float raysBelow = gpu::kRaysBelow);
 
 } // namespace sconce

@@ -3,14 +3,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "lights.glsl"
 #include "gbuffer_read.glsl"
+#include "tiles.glsl"
 
 // Diffuse light straight from emitters and from the sky, by some of their samples and these samples' shadow maps, added to the light that
 // surfaces reflect (the probes' irradiance). Each pixel takes another subset; the filter after it blends them.
-// Dispatch: ceil(width/8) x ceil(height/8).
+// Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 4) uniform texture2D gGeometricNormal;
-layout(set = 1, binding = 5, rgba32f) readonly uniform image2D reflected; // rgb: cosine-weighted mean radiance
-layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D total;
+layout(set = 1, binding = 5, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
 layout(scalar, push_constant) uniform Push
 {
     vec3 origin;  // of field space, world metres
@@ -36,17 +36,14 @@ vec3 someLights(Pixel p, vec3 point, vec3 geometric, uint first, uint count, uin
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
+    ivec2 at;
+    if (!findPixel(kTermDiffuse, at)) return;
     Pixel p = readPixel(at);
-    vec3 light = imageLoad(reflected, at).rgb;
-    if (p.surface && p.brdf.metallic < 1.0)
-    {
-        vec3 point = (p.position - origin) / scale;
-        vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
-        vec3 irradiance = someLights(p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
-                          someLights(p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
-        light += irradiance / SCONCE_BRDF_PI;
-    }
-    imageStore(total, at, vec4(light, 1.0));
+    if (!p.surface || isNotOf(kTermDiffuse, termsOf(p))) return;
+    vec3 light = imageLoad(diffuse, at).rgb;
+    vec3 point = (p.position - origin) / scale;
+    vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
+    vec3 irradiance = someLights(p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
+                      someLights(p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
+    imageStore(diffuse, at, vec4(light + irradiance / SCONCE_BRDF_PI, 1.0));
 }

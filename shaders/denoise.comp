@@ -3,12 +3,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
+#include "tiles.glsl"
 
 // One step of a cross-bilateral filter over the G-buffer: 5x5 taps of a B3 spline, `stride` pixels apart; steps of stride 1, 2, 4 reach 14
 // pixels (Dammertz et al. 2010, "Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering"). McGuire et al. 2017,
 // section 5.1, filter glossy light narrowly and diffuse light widely: here a glossy pixel's reach follows its roughness.
-// Dispatch: ceil(width/8) x ceil(height/8).
+// Only pixels that have the term are read. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 1) const uint kTerm = kTermGlossy;
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D noisy;
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D smooth_;
 layout(scalar, push_constant) uniform Push
@@ -22,10 +24,11 @@ const float kSpline[3] = float[](3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0);
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
-    vec4 own = imageLoad(noisy, at);
+    ivec2 at;
+    if (!findPixel(kTerm, at)) return;
     Pixel p = readPixel(at);
+    if (isNotOf(kTerm, termsOf(p))) return;
+    vec4 own = imageLoad(noisy, at);
     float reach = kReach;
     if (followRoughness != 0) reach *= clamp(2.5 * p.brdf.roughness - 0.05, 0.0, 1.0) * inversesqrt(float(frame.glossyRays)); // as the noise falls
     if (!p.surface || reach < float(stride))
@@ -43,7 +46,7 @@ void main()
             if (float(stride * stride * (dx * dx + dy * dy)) > reach * reach || any(lessThan(tap, ivec2(0))) ||
                 any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
             Pixel q = readPixel(tap);
-            if (!q.surface) continue;
+            if ((termsOf(q) & (1u << kTerm)) == 0u) continue;
             float plane = abs(dot(q.position - p.position, p.normal)) / (0.01 * toEye);
             float facing = max(dot(p.normal, q.normal), 0.0);
             float rough = abs(p.brdf.roughness - q.brdf.roughness) * 8.0;

@@ -18,6 +18,7 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
     uvec2 distanceAddress;   // words of FieldData::distance
     uvec2 radianceAddress;   // FieldData::radiance
     uvec2 irradianceAddress; // FieldData::irradiance
+    uvec2 prefilteredAddress; // FieldData::prefiltered
 };
 layout(scalar, set = SCONCE_FIELD_SET, binding = 1) readonly buffer SconceProbes { ProbeHeader sconceProbes[]; };
 layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
@@ -25,11 +26,15 @@ layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
 // TraceQuality::farBounds, a constant: a trace without them pays nothing for them. LightField::constants() holds its value.
 layout(constant_id = 0) const bool kReadFarBounds = false;
 bool readsFarBounds() { return kReadFarBounds; }
+// Whether the field holds the maps' radiance; else only its prefiltered form.
+layout(constant_id = 1) const bool kHoldsRadiance = true;
+bool holdsRadiance() { return kHoldsRadiance; }
 
 ProbeHeader probeHeader(uint probe) { return sconceProbes[probe]; }
 uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
 uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }
 uint irradianceWord(uint index) { return SconceWords(irradianceAddress).word[index]; }
+uint prefilteredWord(uint index) { return SconceWords(prefilteredAddress).word[index]; }
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 
 #include "shared/texel.h"
@@ -40,6 +45,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/ray_state.h"
 #include "shared/face_march.h"
 #include "shared/probe_trace.h"
+#include "shared/prefiltered.h"
 #include "shared/light_lookup.h"
 #include "shared/ray_query.h"
 #ifdef SCONCE_BASELINE // one of the bench's opponents, by number, in our tracer's place

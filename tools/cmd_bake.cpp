@@ -3,6 +3,7 @@
 
 #include "placement/probe_set.h"
 #include "runtime/bake.h"
+#include "runtime/effect_plan.h"
 #include "runtime/host_vulkan.h"
 #include "runtime/light_field_file.h"
 #include "scene/scene_check.h"
@@ -18,7 +19,7 @@ struct BakeOptions
 {
     SceneOptions scene;
     BakeSettings settings;
-    std::string probes, output, device;
+    std::string probes, output, device, effects = "auto";
     uint64_t memoryMb = 0;
 };
 
@@ -33,13 +34,17 @@ int runBake(const BakeOptions& options, const Context& context)
     if (!device) return fail(device.error());
     BakeSettings settings = options.settings;
     settings.grid = set->grid;
+    const Result<EffectPlan> plan = planEffects(checkScene(*scene), options.effects);
+    if (!plan) return fail(plan.error());
+    settings.radiance = plan->needsRadiance();
+    settings.prefiltered = plan->needsPrefiltered() || !settings.radiance; // a traced ray's colour, when someone asks for one
+    for (const PlannedEffect& effect : plan->effects)
+        if (effect.on) settings.effects.push_back(effect.name);
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
     BakeReport report;
     Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
     if (!field) return fail(field.error());
-    for (const SceneEffect& effect : checkScene(*scene).effects)
-        if (effect.called) field->effects.push_back(effect.name);
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     if (context.json)
     {
@@ -50,7 +55,8 @@ int runBake(const BakeOptions& options, const Context& context)
         json["stage_seconds"] = {{"scene", report.sceneSeconds},
                                  {"probes", report.probeSeconds},
                                  {"octree", report.octreeSeconds},
-                                 {"bounces", report.bounceSeconds}};
+                                 {"bounces", report.bounceSeconds},
+                                 {"prefilter", report.prefilterSeconds}};
         json["octree_on_device"] = report.octreeOnDevice;
         addCost(json, watch);
         print(json);
@@ -93,6 +99,10 @@ void addBakeCommand(CLI::App& app, Context& context)
                      "to 1048576)")
         ->check(unlisted(CLI::Range(uint64_t(1), uint64_t(1) << 20)))
         ->type_name("MIB");
+    bake->add_option("--effects", options->effects,
+                     "auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them. Without glossy and "
+                     "mirror the file holds no radiance for traced rays: half of its size (default: auto)")
+        ->type_name("auto|all|none|LIST");
     addDevice(bake, options->device);
     onChosen(bake, context, options, runBake);
 }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bench/baselines.h"
+#include "runtime/effect_plan.h"
 #include "runtime/host_vulkan.h"
 #include "runtime/light_field_file.h"
 #include "runtime/scene_renderer.h"
@@ -29,35 +30,21 @@ struct RenderOptions
     std::string field, effects = "auto", tracer = "ours", device;
     uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
     std::optional<float> roughness;
+    float raysBelow = gpu::kRaysBelow;
     bool noDenoise = false;
 };
 
-/// auto leaves out what cannot add light: then the frame is the full one to the bit.
-Result<IndirectEffects> chooseEffects(const std::string& text, const Scene& scene)
+/// The plan for the scene as it is drawn: with --roughness every surface has that.
+Result<EffectPlan> choosePlan(const RenderOptions& options, const Scene& scene)
 {
-    if (text == "all") return IndirectEffects{};
-    if (text == "none") return IndirectEffects{.diffuse = false, .glossy = false, .denoise = false};
-    IndirectEffects effects;
-    if (text == "auto")
+    if (!options.roughness) return planEffects(checkScene(scene, options.raysBelow), options.effects);
+    Scene drawn = scene;
+    for (Material& material : drawn.materials)
     {
-        for (const SceneEffect& effect : checkScene(scene).effects)
-            if (effect.name == "diffuse") effects.diffuse = effect.called;
-        return effects;
+        material.roughness = *options.roughness;
+        material.metallicRoughnessTexture.image = -1; // metals stay what their factor says; only roughness counts for reflections
     }
-    effects = {.diffuse = false, .glossy = false, .denoise = false};
-    for (const std::string& name : split(text, ','))
-    {
-        if (name == "diffuse")
-            effects.diffuse = true;
-        else if (name == "glossy")
-            effects.glossy = true;
-        else if (name == "denoise")
-            effects.denoise = true;
-        else
-            return Error{ErrorCode::badArgument,
-                         "--effects: '" + name + "' is not auto, all, none, or a list of diffuse, glossy, denoise."};
-    }
-    return effects;
+    return planEffects(checkScene(drawn, options.raysBelow), options.effects);
 }
 
 void addColours(ImageSet& images, const char* name, const std::vector<vec3>& pixels)
@@ -96,22 +83,22 @@ ImageSet imagesOf(const RenderedFrame& frame)
     return images;
 }
 
-/// Means over the pixels that show a surface.
+/// Means over the pixels that traced rays.
 void addCounts(Json& json, const RenderedFrame& frame, uint32_t samples)
 {
-    double unknown = 0.0, fetches = 0.0, handoffs = 0.0, surfaces = 0.0;
+    double unknown = 0.0, fetches = 0.0, handoffs = 0.0, traced = 0.0;
     for (size_t i = 0; i < frame.counts.size(); ++i)
     {
-        if (!(frame.depth[i] > 0.0f)) continue;
-        ++surfaces;
+        if (frame.counts[i].z == 0) continue;
+        ++traced;
         handoffs += frame.counts[i].y;
         fetches += frame.counts[i].z;
         unknown += frame.counts[i].w;
     }
-    if (surfaces == 0.0) return;
-    json["unknown_share"] = unknown / (surfaces * samples);
-    json["fetches_per_ray"] = fetches / (surfaces * samples);
-    json["handoffs_per_ray"] = handoffs / (surfaces * samples);
+    if (traced == 0.0) return;
+    json["unknown_share"] = unknown / (traced * samples);
+    json["fetches_per_ray"] = fetches / (traced * samples);
+    json["handoffs_per_ray"] = handoffs / (traced * samples);
 }
 
 double median(std::vector<double> values)
@@ -128,8 +115,10 @@ int runRender(const RenderOptions& options, const Context& context)
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
-    const Result<IndirectEffects> effects = chooseEffects(options.effects, *scene);
-    if (!effects) return fail(effects.error());
+    const Result<EffectPlan> plan = choosePlan(options, *scene);
+    if (!plan) return fail(plan.error());
+    for (const PlannedEffect& effect : plan->effects)
+        if (effect.called && !effect.on) note(context, "Given up: " + effect.name + ". " + effect.why);
     const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
     if (!data) return fail(data.error());
     if (!data->sceneName.empty() && data->sceneName != scene->name)
@@ -148,8 +137,14 @@ int runRender(const RenderOptions& options, const Context& context)
     settings.height = options.height;
     settings.glossyRays = options.samples;
     settings.areaSamples *= options.samples;
-    settings.effects = *effects;
-    settings.effects.denoise = effects->denoise && !options.noDenoise;
+    settings.effects = plan->indirect();
+    settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
+    settings.areaLights = plan->on("emitters") || plan->on("sky");
+    settings.raysBelow = options.raysBelow;
+    if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
+        note(context,
+             "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
+             "radiance. Bake it with --effects all.");
     settings.roughness = options.roughness;
     settings.seed = options.seed;
     if (const std::optional<Baseline> baseline = baselineNamed(options.tracer))
@@ -184,13 +179,16 @@ int runRender(const RenderOptions& options, const Context& context)
     Json json;
     json["device"] = device->name();
     json["tracer"] = options.tracer;
-    json["effects"] = {{"diffuse", settings.effects.diffuse}, {"glossy", settings.effects.glossy}, {"denoise", settings.effects.denoise}};
+    json["effects"] = Json::object();
+    for (const PlannedEffect& effect : plan->effects) json["effects"][effect.name] = effect.on;
+    json["effects"]["denoise"] = settings.effects.denoise;
+    json["device_bytes"] = (*renderer)->deviceBytes();
     json["samples"] = options.samples;
     json["frames"] = options.frames;
     json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
-    if (settings.effects.glossy) addCounts(json, *frame, options.samples);
+    if (settings.effects.glossy || settings.effects.mirror) addCounts(json, *frame, options.samples);
     if (Status status = options.pictures.write(imagesOf(*frame), json); !status) return fail(status.error());
     addCost(json, watch);
     if (context.json)
@@ -216,9 +214,19 @@ void addRenderCommand(CLI::App& app, Context& context)
     options->camera.add(command);
     addSize(command, options->width, options->height);
     command
-        ->add_option("--effects", options->effects,
-                     "auto: what the scene calls for; all; none; or a list of diffuse, glossy, denoise (default: auto)")
+        ->add_option(
+            "--effects", options->effects,
+            "auto: what the scene calls for, on the tiles of the picture that need it; all: every effect over the whole picture, for the "
+            "same pixels; none; or a list of effects, as `sconce check` names them, and denoise; -NAME takes one away, as in "
+            "auto,-mirror (default: auto)")
         ->type_name("auto|all|none|LIST");
+    command
+        ->add_option(
+            "--rays-below", options->raysBelow,
+            "Roughness below which reflections are traced; rougher ones are read from prefiltered radiance (default: 0.4; range: 0 "
+            "to 2)")
+        ->check(unlisted(CLI::Range(0.0f, 2.0f)))
+        ->type_name("R");
     addTracer(command, options->tracer);
     command
         ->add_option("--samples", options->samples,

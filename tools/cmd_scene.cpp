@@ -1,6 +1,7 @@
 // sconce scenes and check: what can be lit, what is in it, and what it calls for.
 #include <iostream>
 
+#include "runtime/effect_plan.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_check.h"
 #include "tools/common.h"
@@ -34,7 +35,7 @@ const char* severityName(Severity severity)
     return severity == Severity::info ? "info" : severity == Severity::warning ? "warning" : "error";
 }
 
-Json reportJson(const Scene& scene, const SceneReport& r)
+Json reportJson(const Scene& scene, const SceneReport& r, const EffectPlan& plan)
 {
     Json json;
     json["scene"] = scene.name;
@@ -48,6 +49,7 @@ Json reportJson(const Scene& scene, const SceneReport& r)
                                                        {"point_lights", r.pointLights},
                                                        {"spot_lights", r.spotLights},
                                                        {"emissive_triangles", r.emissiveTriangles},
+                                                       {"rough_materials", r.roughMaterials},
                                                        {"glossy_materials", r.glossyMaterials},
                                                        {"mirror_materials", r.mirrorMaterials},
                                                        {"metal_materials", r.metalMaterials},
@@ -65,8 +67,8 @@ Json reportJson(const Scene& scene, const SceneReport& r)
     json["cameras"] = Json::array();
     for (const Camera& camera : scene.cameras) json["cameras"].push_back(camera.name);
     json["effects"] = Json::array();
-    for (const SceneEffect& effect : r.effects)
-        json["effects"].push_back({{"name", effect.name}, {"called", effect.called}, {"why", effect.why}});
+    for (const PlannedEffect& effect : plan.effects)
+        json["effects"].push_back({{"name", effect.name}, {"called", effect.called}, {"why", effect.why}, {"cost", effect.cost}});
     json["findings"] = Json::array();
     for (const Finding& finding : r.findings)
         json["findings"].push_back({{"code", finding.code}, {"severity", severityName(finding.severity)}, {"sentence", finding.sentence}});
@@ -74,7 +76,7 @@ Json reportJson(const Scene& scene, const SceneReport& r)
     return json;
 }
 
-void printReport(const Scene& scene, const SceneReport& r)
+void printReport(const Scene& scene, const SceneReport& r, const EffectPlan& plan)
 {
     std::cout << scene.name << ": " << r.triangles << " triangles, " << r.vertices << " vertices, " << r.materials << " materials, "
               << r.textures << " textures (" << (r.textureBytes >> 10) << " KiB), " << r.cameras << " cameras\n";
@@ -85,8 +87,12 @@ void printReport(const Scene& scene, const SceneReport& r)
               << r.emissiveTriangles << " emissive triangles (" << r.emissiveArea << " m^2)\n"
               << "edges: " << r.openEdges << " of " << r.edges << " open; " << r.degenerateTriangles << " degenerate and "
               << r.duplicateTriangles << " duplicate triangles\n";
-    for (const SceneEffect& effect : r.effects)
-        std::cout << (effect.called ? "effect  + " : "effect  - ") << effect.name << ": " << effect.why << "\n";
+    for (const PlannedEffect& effect : plan.effects)
+    {
+        std::cout << (effect.called ? "effect  + " : "effect  - ") << effect.name << ": " << effect.why;
+        if (effect.called) std::cout << " Cost: " << effect.cost;
+        std::cout << "\n";
+    }
     for (const Finding& finding : r.findings)
         std::cout << severityName(finding.severity) << " [" << finding.code << "]: " << finding.sentence << "\n";
     std::cout << std::flush;
@@ -97,10 +103,12 @@ int runCheck(const SceneOptions& options, const Context& context)
     const Result<Scene> scene = options.load(context);
     if (!scene) return fail(scene.error());
     const SceneReport report = checkScene(*scene);
+    const Result<EffectPlan> plan = planEffects(report);
+    if (!plan) return fail(plan.error());
     if (context.json)
-        print(reportJson(*scene, report));
+        print(reportJson(*scene, report, *plan));
     else
-        printReport(*scene, report);
+        printReport(*scene, report, *plan);
     for (const Finding& finding : report.findings)
         if (finding.severity == Severity::error) return fail(ErrorCode::badInput, finding.sentence);
     return exitOk;

@@ -19,8 +19,8 @@ const char* chartName(uint32_t chart)
 
 Json bytesJson(const FieldBytes& bytes)
 {
-    return {{"total", bytes.total()},     {"distance", bytes.distance},     {"normals", bytes.normals},
-            {"radiance", bytes.radiance}, {"irradiance", bytes.irradiance}, {"index", bytes.index}};
+    return {{"total", bytes.total()},           {"distance", bytes.distance},     {"normals", bytes.normals}, {"radiance", bytes.radiance},
+            {"prefiltered", bytes.prefiltered}, {"irradiance", bytes.irradiance}, {"index", bytes.index}};
 }
 
 std::string megabytes(size_t bytes)
@@ -64,8 +64,9 @@ void printField(const FieldData& field, const std::string& file)
     std::cout << file << ": scene " << field.sceneName << ", " << info.probeCount << " probes, chart " << chartName(info.chart) << ", "
               << (info.chart == gpu::kChartCube ? "faces of " : "maps of ") << info.faceSize << " texels, " << field.bounces << " bounces\n"
               << "bytes: " << megabytes(bytes.total()) << " = distance " << megabytes(bytes.distance) << " + normals "
-              << megabytes(bytes.normals) << " + radiance " << megabytes(bytes.radiance) << " + irradiance " << megabytes(bytes.irradiance)
-              << " + index " << megabytes(bytes.index) << "\n"
+              << megabytes(bytes.normals) << " + radiance " << megabytes(bytes.radiance) << " + prefiltered "
+              << megabytes(bytes.prefiltered) << " + irradiance " << megabytes(bytes.irradiance) << " + index " << megabytes(bytes.index)
+              << "\n"
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
               << ", voxels of " << field.octree.voxel * info.scale << " m\n"
               << "effects:";
@@ -77,6 +78,7 @@ Result<FieldData> loadFieldFor(const std::string& file, const std::string& trace
 {
     Result<FieldData> field = loadField(file);
     if (!field) return field;
+    if (field->prefiltered.empty() && !field->radiance.empty()) prefilterRadiance(*field); // a file of version 2
     if (const std::optional<Baseline> baseline = baselineNamed(tracer))
     {
         Result<FieldData> made = baselineField(std::move(*field), *baseline);

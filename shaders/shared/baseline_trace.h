@@ -201,6 +201,7 @@ SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
 SCONCE_FN vec3 baselineRadiance(SCONCE_IN(TraceResult) hit)
 {
     int n = int(field.faceSize);
+    if (!holdsRadiance()) return prefilteredRadiance(hit.probe, directionFromOctahedral(hit.pixel / real(n)), real(0.0));
     real x = hit.pixel.x - real(0.5), y = hit.pixel.y - real(0.5);
     int x0 = min(max(int(floor(x)), 0), n - 2);
     int y0 = min(max(int(floor(y)), 0), n - 2);

@@ -12,8 +12,36 @@ struct FrameView
     uvec2 size;          // pixels
     uint glossyRays;     // rays a pixel, 1..64
     float normalOffset;  // metres a ray starts off its surface; 1e-4 of the scene's diagonal
+    float raysBelow;     // roughness: reflections below it are traced, above it read from prefiltered radiance; default kRaysBelow
 };
-SCONCE_CHECK_SIZE(FrameView, 96);
+SCONCE_CHECK_SIZE(FrameView, 100);
+
+const uint kEnvironmentBrdfSide = 32u; // entries a side of the table of runtime/environment_brdf.h
+
+const float kRaysBelow = 0.4f;   // roughness
+const float kRaysBlend = 0.05f;  // either side of raysBelow both are made and blended, so that no seam shows in a roughness texture
+
+// The terms of a pixel's light, each of which has passes of its own.
+const uint kTermDiffuse = 0u;
+const uint kTermRough = 1u;  // reflections from prefiltered radiance
+const uint kTermGlossy = 2u; // reflections by traced rays
+const uint kTermMirror = 3u; // one traced ray, never filtered
+const uint kTermCount = 4u;
+const uint kListGathered = 4u; // tiles of the diffuse or of the rough term, which one pass makes together
+const uint kListCount = 5u;
+
+const uint kTileSide = 8u;      // pixels; a workgroup
+const uint kTileRow = 128u;     // tiles a row of an indirect dispatch has
+
+/// Where a list's passes run: the arguments of their indirect dispatch and the number of tiles in the list.
+struct TileRuns
+{
+    uint x;
+    uint y;
+    uint z;
+    uint count;
+};
+SCONCE_CHECK_SIZE(TileRuns, 16);
 
 SCONCE_STRUCTS_END
 

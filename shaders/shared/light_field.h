@@ -18,6 +18,9 @@ const uint kChartOctahedral = 1u;
 const uint kNoProbe = 0xffffffffu;
 const int kRanked = 4;             // ranked probes a voxel holds
 const uint kIrradianceSize = 32u;  // texels a side of the octahedral irradiance and moments map
+const uint kPrefilteredSize = 64u; // texels a side of the finest prefiltered radiance map, octahedral; each level has half of it
+const int kPrefilteredLevels = 4;
+const uint kPrefilteredWords = 5440u; // of a probe, all levels
 const uint kLowFactor = 16u;       // texels of the octahedral map a texel of its low-resolution map covers, per axis
 
 struct ProbeHeader

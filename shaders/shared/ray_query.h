@@ -23,6 +23,12 @@ SCONCE_FN RayHit answer(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r, v
     return hit;
 }
 
+SCONCE_FN vec3 pixelDirection(int face, vec2 pixel)
+{
+    real half_ = real(0.5) * real(field.faceSize);
+    return normalize(faceDirection(face, vec3(pixel.x / half_ - real(1.0), pixel.y / half_ - real(1.0), real(1.0))));
+}
+
 /// The answer of our tracer's result.
 SCONCE_FN RayHit answerOf(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
 {
@@ -31,7 +37,8 @@ SCONCE_FN RayHit answerOf(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
     if (r.face >= 0)
     {
         normal = texelNormal(r.face, r.pixel, r.word);
-        radiance = surfelRadiance(r);
+        // A field of a scene without glossy surfaces has its radiance only prefiltered: the hit is then as blurred as that.
+        radiance = holdsRadiance() ? surfelRadiance(r) : prefilteredRadiance(r.probe, pixelDirection(r.face, r.pixel), real(0.0));
     }
     return answer(origin, direction, r, normal, radiance);
 }

@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bench/reference.h"
-#include "runtime/bake.h"
-#include "runtime/scene_renderer.h"
 #include "scene/builtin_scenes.h"
-#include "tests/support/device.h"
+#include "tests/frame/frame_test.h"
 
 namespace sconce
 {
@@ -18,7 +16,7 @@ using namespace testing_support;
 
 constexpr uint32_t kSide = 96; // pixels
 
-class SceneRendererTest : public DeviceTest
+class SceneRendererTest : public FrameTest
 {
 protected:
     struct Pictures
@@ -29,8 +27,7 @@ protected:
 
     static RenderSettings settingsFor()
     {
-        RenderSettings settings;
-        settings.width = settings.height = kSide;
+        RenderSettings settings = settingsOf(kSide);
         settings.glossyRays = 16;
         settings.areaSamples = 64;
         return settings;
@@ -38,18 +35,9 @@ protected:
 
     Result<RenderedFrame> draw(const Scene& scene, std::span<const vec3> probes, const RenderSettings& settings, uint32_t resolution = 128)
     {
-        BakeSettings bake;
-        bake.resolution = resolution;
-        BakeReport report;
-        auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        const auto field = bakeField(scene, probes, resolution);
         if (!field) return field.error();
-        auto device = DeviceScene::create(gpu(), scene, field->info);
-        if (!device) return device.error();
-        auto light = LightField::create(gpu(), *field);
-        if (!light) return light.error();
-        auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
-        if (!renderer) return renderer.error();
-        return (*renderer)->render(scene.cameras.front());
+        return drawWith(*field, scene, settings);
     }
 
     static ImageSet truthOf(const Scene& scene, uint32_t samples)
@@ -106,7 +94,7 @@ TEST_F(SceneRendererTest, GBufferIsWhatThePathTracerSees)
 {
     const Scene scene = *makeBuiltinScene("temple");
     RenderSettings settings = settingsFor();
-    settings.effects = {.diffuse = false, .glossy = false, .denoise = false};
+    settings.effects = {.diffuse = false, .rough = false, .glossy = false, .mirror = false, .denoise = false};
     const auto frame = draw(scene, std::vector{scene.cameras.front().eye}, settings);
     ASSERT_TRUE(frame) << frame.error().message;
     const ImageSet truth = truthOf(scene, 1);
@@ -135,7 +123,7 @@ TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
     RenderSettings settings = settingsFor();
     settings.glossyRays = 1;
     const auto all = draw(scene, kCornellProbes, settings);
-    settings.effects.glossy = false;
+    settings.effects.glossy = settings.effects.rough = settings.effects.mirror = false;
     const auto diffuseOnly = draw(scene, kCornellProbes, settings);
     ASSERT_TRUE(all && diffuseOnly);
     EXPECT_EQ(all->diffuseIndirect, diffuseOnly->diffuseIndirect) << "to the bit";

@@ -68,7 +68,8 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
     field.distance.resize(size_t(probes) * field.info.wordsPerProbe);
     field.radiance.resize(size_t(probes) * radianceWordsPerProbe(chart, size));
     field.irradiance.resize(size_t(probes) * gpu::kIrradianceSize * gpu::kIrradianceSize * 2);
-    for (auto* words : {&field.distance, &field.radiance, &field.irradiance})
+    field.prefiltered.resize(size_t(probes) * gpu::kPrefilteredWords);
+    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered})
         for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
     field.octree.boundsHigh = {1.0f, 2.0f, 3.0f};
     field.info.voxel = field.octree.voxel = 0.125f;
@@ -94,6 +95,7 @@ void expectSame(const FieldData& a, const FieldData& b)
     EXPECT_EQ(a.distance, b.distance);
     EXPECT_EQ(a.radiance, b.radiance);
     EXPECT_EQ(a.irradiance, b.irradiance);
+    EXPECT_EQ(a.prefiltered, b.prefiltered);
     EXPECT_EQ(a.octree.texels, b.octree.texels);
     EXPECT_EQ(a.octree.boundsHigh, b.octree.boundsHigh);
     EXPECT_EQ(a.octree.voxel, b.octree.voxel);
@@ -132,7 +134,8 @@ TEST(FieldData, BytesByPartAddUpToWhatIsStored)
         const FieldBytes bytes = bytesByPart(field);
         EXPECT_EQ(bytes.distance + bytes.normals, field.distance.size() * 4);
         EXPECT_EQ(bytes.normals, chart == gpu::kChartOctahedral ? 3u * 16 * 16 * 2 : 0u);
-        EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size()) + 16 * 4 + 3 * 48);
+        EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size() + field.prefiltered.size()) +
+                                     16 * 4 + 3 * 48);
     }
 }
 
@@ -150,11 +153,25 @@ TEST_F(LightFieldFile, RoundTripGivesBackEveryField)
         }
 }
 
+TEST_F(LightFieldFile, WhatNoSurfaceCallsForMayBeLeftOut)
+{
+    for (const bool radiance : {false, true})
+    {
+        FieldData field = smallField(gpu::kChartCube, 16);
+        (radiance ? field.radiance : field.prefiltered).clear();
+        ASSERT_TRUE(saveField(field, file));
+        const Result<FieldData> back = loadField(file);
+        ASSERT_TRUE(back) << back.error().message;
+        expectSame(field, *back);
+    }
+}
+
 TEST_F(LightFieldFile, RoundTripOfAnEmptyField)
 {
     FieldData field = smallField(gpu::kChartCube, 8, 1);
     field.info.probeCount = 0;
-    field.probes.clear(), field.distance.clear(), field.radiance.clear(), field.irradiance.clear(), field.octree.texels.clear();
+    field.probes.clear(), field.distance.clear(), field.radiance.clear(), field.irradiance.clear(), field.prefiltered.clear(),
+        field.octree.texels.clear();
     field.octree.bricks = {0, 0, 0};
     field.effects.clear();
     ASSERT_TRUE(saveField(field, file));
@@ -247,7 +264,7 @@ TEST_F(LightFieldFile, EveryTruncationIsRefusedWithASentence)
 
 TEST_F(LightFieldFile, OtherVersionsAreRefusedByName)
 {
-    for (const uint32_t version : {kFieldFileVersion - 1, kFieldFileVersion + 1})
+    for (const uint32_t version : {kOldestFieldFileVersion - 1, kFieldFileVersion + 1})
     {
         ASSERT_TRUE(saveField(smallField(), file));
         std::string bytes = readBytes(file);

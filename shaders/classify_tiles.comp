@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_scalar_block_layout : require
+#include "gbuffer_read.glsl"
+
+// Lists the tiles in which some pixel has a term, for each term, and those of the terms that are gathered. The order of a list varies from run to run; no pixel depends on it.
+// `runs` starts as (kTileRow, 0, 1, 0). Dispatch: ceil(width/8) x ceil(height/8).
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(scalar, set = 1, binding = 8) buffer SconceTiles
+{
+    TileRuns runs[kListCount];
+    uint tiles[];
+};
+shared uint tileTerms;
+
+void main()
+{
+    if (gl_LocalInvocationIndex == 0u) tileTerms = 0u;
+    barrier();
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(at, ivec2(frame.size))))
+    {
+        uint terms = termsOf(readPixel(at));
+        if (terms != 0u) atomicOr(tileTerms, terms);
+    }
+    barrier();
+    uint list = gl_LocalInvocationIndex;
+    uint wanted = list == kListGathered ? (1u << kTermDiffuse) | (1u << kTermRough) : 1u << list;
+    if (list >= kListCount || (tileTerms & wanted) == 0u) return;
+    uint index = atomicAdd(runs[list].count, 1u);
+    atomicMax(runs[list].y, index / kTileRow + 1u);
+    tiles[list * gl_NumWorkGroups.x * gl_NumWorkGroups.y + index] = gl_WorkGroupID.x | (gl_WorkGroupID.y << 16);
+}

@@ -1,0 +1,60 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light_field.glsl"
+#include "gbuffer_read.glsl"
+#define SCONCE_TILE_CONSTANT 2
+#include "tiles.glsl"
+
+// Light that needs no ray, from the pixel's ranked probes weighted by visibility: diffuse by their prefiltered irradiance, rough reflections
+// by their prefiltered radiance. The leaf is looked up at points dithered by a voxel, so that no border of a voxel shows.
+// Dispatch: see findPixel.
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 3) const bool kDiffuse = true; // make the diffuse light
+layout(constant_id = 4) const bool kRough = true;   // make the rough reflections
+layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
+layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
+layout(scalar, set = 1, binding = 6) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/environment_brdf.h
+
+const uint kLookUps = 4u; // dithered look-ups a pixel
+
+/// Bilinear: scale and bias of the reflectance at normal incidence.
+vec2 reflectedShare(float cosine, float alpha)
+{
+    const int n = int(kEnvironmentBrdfSide);
+    vec2 at = clamp(vec2(cosine, sqrt(alpha)), 0.0, 1.0) * float(n - 1);
+    ivec2 low = min(ivec2(at), n - 2);
+    vec2 f = at - vec2(low);
+    int i = low.y * n + low.x;
+    return mix(mix(environmentBrdf[i], environmentBrdf[i + 1], f.x), mix(environmentBrdf[i + n], environmentBrdf[i + n + 1], f.x), f.y);
+}
+
+void main()
+{
+    ivec2 at;
+    if (!findPixel(kListGathered, at)) return;
+    Pixel p = readPixel(at);
+    uint terms = termsOf(p);
+    bool wantDiffuse = kDiffuse && !isNotOf(kTermDiffuse, terms), wantRough = kRough && !isNotOf(kTermRough, terms);
+    if (!p.surface || !(wantDiffuse || wantRough)) return;
+    vec3 point = (p.position - field.origin) / field.scale;
+    TangentFrame tangents = tangentFrame(p.normal);
+    float alpha = ggxAlpha(p.brdf.roughness);
+    Lobe lobe = reflectedLobe(p.normal, p.view, alpha);
+    vec3 diffuseSum = vec3(0.0), lobeSum = vec3(0.0);
+    float weight = 0.0;
+    for (uint i = 0u; i < kLookUps; ++i)
+    {
+        vec2 along = (randomPair(uvec2(at), i, 1u, frame.seed) - 0.5) * 2.0 * field.voxel;
+        int reads = 0;
+        vec3 lookUp = point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal;
+        GatheredLight light = gatherLight(point, p.normal, lookUp, lobe, wantDiffuse, wantRough, reads);
+        diffuseSum += light.diffuse;
+        lobeSum += light.lobe;
+        weight += light.weight;
+    }
+    weight = max(weight, 1e-30);
+    if (wantDiffuse) imageStore(diffuse, at, vec4(diffuseSum / weight, 1.0));
+    if (!wantRough) return;
+    vec2 share = reflectedShare(dot(p.normal, p.view), alpha);
+    imageStore(rough, at, vec4(lobeSum / weight * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));
+}

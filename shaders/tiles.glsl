@@ -1,0 +1,30 @@
+// Which pixel an invocation works on: a pass runs on the tiles of a list, or over the whole picture. After gbuffer_read.glsl.
+#ifndef SCONCE_TILE_CONSTANT
+#define SCONCE_TILE_CONSTANT 0 // the constant id of kTiled; a pass with light_field.glsl has its own before
+#endif
+layout(constant_id = SCONCE_TILE_CONSTANT) const bool kTiled = true; // false: over the whole picture, every pixel computed, needed or not
+layout(scalar, set = 1, binding = 8) readonly buffer SconceTiles
+{
+    TileRuns runs[kListCount];
+    uint tiles[]; // [list][as many as the picture has]: x | y << 16
+};
+
+/// Dispatch: the list's TileRuns, or ceil(width/8) x ceil(height/8).
+/// @return  whether there is a pixel to work on
+bool findPixel(uint list, out ivec2 at)
+{
+    uvec2 origin = kTileSide * gl_WorkGroupID.xy;
+    if (kTiled)
+    {
+        uint index = gl_WorkGroupID.y * kTileRow + gl_WorkGroupID.x;
+        if (index >= runs[list].count) return false;
+        uvec2 all = (frame.size + kTileSide - 1u) / kTileSide;
+        uint tile = tiles[list * all.x * all.y + index];
+        origin = kTileSide * uvec2(tile & 0xffffu, tile >> 16);
+    }
+    at = ivec2(origin + gl_LocalInvocationID.xy);
+    return all(lessThan(at, ivec2(frame.size)));
+}
+
+/// Whether the pass may leave this pixel out.
+bool isNotOf(uint term, uint terms) { return kTiled && (terms & (1u << term)) == 0u; }
