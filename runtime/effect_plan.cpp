@@ -74,7 +74,7 @@ bool EffectPlan::called(std::string_view name) const
 
 IndirectEffects EffectPlan::indirect() const
 {
-    return {on("diffuse"), on("rough"), on("glossy"), on("mirror"), on("denoise"), !wholePicture};
+    return {on("diffuse"), on("rough"), on("glossy"), on("mirror"), on("denoise"), false, !wholePicture};
 }
 
 Result<EffectPlan> planEffects(const SceneReport& scene, std::string_view wanted)
@@ -104,7 +104,11 @@ Result<EffectPlan> planEffects(const SceneReport& scene, std::string_view wanted
         else
         {
             std::string names;
-            for (const PlannedEffect& effect : plan.effects) names += (names.empty() ? "" : ", ") + effect.name;
+            for (const PlannedEffect& effect : plan.effects)
+            {
+                names += names.empty() ? "" : ", ";
+                names += effect.name;
+            }
             return Error{ErrorCode::badArgument, "effects: '" + name + "' is not auto, all, none, or one of " + names + "."};
         }
     }

@@ -13,12 +13,13 @@ namespace sconce
 /// Which terms and filters of indirect light are made. What is off has no pipeline, no image and no dispatch.
 struct IndirectEffects
 {
-    bool diffuse = true; // prefiltered irradiance
-    bool rough = true;   // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow
-    bool glossy = true;  // reflections by traced rays
-    bool mirror = true;  // the one ray of perfect mirrors
-    bool denoise = true; // of the glossy term
-    bool tiles = true;   // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
+    bool diffuse = true;   // prefiltered irradiance
+    bool rough = true;     // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow
+    bool glossy = true;    // reflections by traced rays
+    bool mirror = true;    // the one ray of perfect mirrors
+    bool denoise = true;   // of the glossy term
+    bool temporal = false; // filter over time, too, what is filtered over the picture
+    bool tiles = true;     // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
 };
 
 /// One effect: whether the scene calls for it and why, what it costs, and whether the plan has it.

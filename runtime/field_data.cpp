@@ -17,8 +17,8 @@ FieldBytes bytesByPart(const FieldData& field)
         bytes.normals = size_t(field.info.probeCount) * field.info.faceSize * field.info.faceSize * sizeof(uint16_t);
     }
     bytes.distance = distanceBytes - bytes.normals;
-    bytes.radiance = field.radiance.size() * sizeof(uint32_t);
     bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
+    bytes.radiance = field.radiance.size() * sizeof(uint32_t) + bytes.prefiltered;
     bytes.irradiance = field.irradiance.size() * sizeof(uint32_t);
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;

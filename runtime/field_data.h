@@ -35,8 +35,9 @@ struct FieldData
 /// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.
 struct FieldBytes
 {
-    size_t distance = 0, normals = 0, radiance = 0, prefiltered = 0, irradiance = 0, index = 0;
-    size_t total() const { return distance + normals + radiance + prefiltered + irradiance + index; }
+    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0;
+    size_t prefiltered = 0; // of the radiance
+    size_t total() const { return distance + normals + radiance + irradiance + index; }
 };
 FieldBytes bytesByPart(const FieldData& field);
 

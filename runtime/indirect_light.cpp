@@ -29,22 +29,10 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
 
 Status IndirectLight::makeImage(GpuImage& target, VkFormat format, const char* what)
 {
-    ImageDesc imageDesc;
-    imageDesc.format = format;
-    imageDesc.width = desc.width;
-    imageDesc.height = desc.height;
-    imageDesc.usage =
-        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    auto result = gpu->makeImage(imageDesc, what);
-    if (!result) return result.error();
-    target = std::move(*result);
-    return gpu->submit(
-        [&](VkCommandBuffer cmd)
-        {
-            transition(*gpu, cmd, target,
-                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                        0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
-        });
+    auto made = makeLightImage(*gpu, format, desc.width, desc.height, what);
+    if (!made) return made.error();
+    target = std::move(*made);
+    return success();
 }
 
 /// @param images     of bindings 4 and 5
@@ -124,11 +112,11 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
     if (effects.mirror)
         if (auto s = made.makeTrace(gpu::kTermMirror, made.mirrorImage, made.mirrorPass, made.mirrorSet); !s) return s.error();
     if (!effects.glossy) return made;
-    if (auto s = made.makeTrace(gpu::kTermGlossy, made.noisyGlossy, made.glossyPass, made.glossySet); !s) return s.error();
+    if (auto s = made.makeTrace(gpu::kTermGlossy, made.glossyImage, made.glossyPass, made.glossySet); !s) return s.error();
     if (!effects.denoise) return made;
-    if (auto s = made.makeImage(made.smoothGlossy, kLightFormat, "denoised glossy light"); !s) return s.error();
-    auto denoiser = Denoiser::create(gpu, {field.layout(), gpu::kTermGlossy, true, made.tiles(), desc.width, desc.height}, made.frame,
-                                     made.noisyGlossy, made.smoothGlossy);
+    if (auto s = made.makeImage(made.scratch, kLightFormat, "scratch of the glossy filter"); !s) return s.error();
+    auto denoiser = Denoiser::create(gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, made.tiles(), desc.width, desc.height},
+                                     made.frame, made.glossyImage, made.scratch);
     if (!denoiser) return denoiser.error();
     made.denoiser = std::move(*denoiser);
     return made;
@@ -188,9 +176,9 @@ uint64_t IndirectLight::deviceBytes() const
 {
     const uint64_t pixels = uint64_t(desc.width) * desc.height;
     uint64_t bytes = frame.size() + brdfTable.size() + (tileList ? tileList->buffer().size() : 0);
-    for (const GpuImage* image : {&noisyGlossy, &smoothGlossy, &mirrorImage, &countImage, &diffuseImage, &roughImage})
+    for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += 16 * pixels;
-    return bytes;
+    return bytes + denoiser.deviceBytes();
 }
 
 } // namespace sconce

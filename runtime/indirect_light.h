@@ -27,7 +27,8 @@ public:
 
     /// Binds the G-buffer; before the first record and whenever its views change. Not while the GPU runs a recorded frame.
     void setInputs(const FrameInputs& inputs);
-    /// Ends with the barrier that lets any later stage read the outputs (layout GENERAL).
+    /// Record frames in the order in which they are shown, where the effect `temporal` is on. Ends with the barrier that lets any later
+    /// stage read the outputs (layout GENERAL).
     /// @param timer  optional; scopes "classify tiles", "gather light", "glossy trace", "mirror trace", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
@@ -39,7 +40,7 @@ public:
     }                                                    // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light
                                                          // straight from emitters or sky
     const GpuImage& rough() const { return roughImage; } // rgb radiance reflected to the eye, BRDF included; as the next two
-    const GpuImage& glossy() const { return smoothGlossy ? smoothGlossy : noisyGlossy; }
+    const GpuImage& glossy() const { return glossyImage; }
     const GpuImage& mirror() const { return mirrorImage; }
     const GpuImage& counts() const { return countImage; } // RGBA32UI: probe, hand-offs, reads, unknown rays; of the traced terms
     /// The tiles of each term, for the host's own passes over the terms; null when passes run over the whole picture.
@@ -57,7 +58,7 @@ private:
     const LightField* field = nullptr;
     Desc desc;
     Buffer frame, brdfTable;
-    GpuImage noisyGlossy, smoothGlossy, mirrorImage, countImage, diffuseImage, roughImage;
+    GpuImage glossyImage, scratch, mirrorImage, countImage, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep
     DescriptorSet glossySet, mirrorSet, gatherSet;
     Pipeline glossyPass, mirrorPass, gatherPass;

@@ -67,6 +67,14 @@ mat4 worldFromClip(const Camera& camera, const CameraBasis& basis, const gpu::Li
     return mat4(vec4(s * basis.right, 0), vec4(-s * basis.up, 0), vec4(camera.eye, 1), vec4(s * basis.forward, 0));
 }
 
+/// x right, y down, w metres along the view's axis.
+mat4 clipFromWorld(const Camera& camera, const CameraBasis& basis)
+{
+    const vec3 x = basis.right / glm::dot(basis.right, basis.right), y = -basis.up / glm::dot(basis.up, basis.up), w = basis.forward;
+    const vec3 origin(glm::dot(x, camera.eye), glm::dot(y, camera.eye), glm::dot(w, camera.eye));
+    return mat4(vec4(x.x, y.x, 0, w.x), vec4(x.y, y.y, 0, w.y), vec4(x.z, y.z, 0, w.z), vec4(-origin.x, -origin.y, 0, -origin.z));
+}
+
 } // namespace
 
 Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
@@ -112,7 +120,7 @@ Status SceneRenderer::make()
         if (auto s = image(*target, kGBufferFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
     for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
                                         {&beauty, "picture", true},
-                                        {&smoothDiffuse, "denoised diffuse light", effects.diffuse},
+                                        {&scratch, "scratch of the diffuse filter", effects.diffuse},
                                         {&diffuseLayer, "diffuse layer", settings.layers && effects.diffuse},
                                         {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
     {
@@ -185,8 +193,9 @@ Status SceneRenderer::makeDiffuse()
         areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
         areaSet.write(kTileBinding, indirect->tiles() ? indirect->tiles()->buffer() : frameBlock);
     }
-    const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, indirect->tiles(), settings.width, settings.height};
-    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->diffuse(), smoothDiffuse);
+    const Denoiser::Desc desc{scene.layout(),    gpu::kTermDiffuse, false,          settings.effects.temporal,
+                              indirect->tiles(), settings.width,    settings.height};
+    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->diffuse(), scratch);
     if (!made) return made.error();
     denoiser = std::move(*made);
     denoiser.setInputs(gBuffer);
@@ -203,7 +212,7 @@ Status SceneRenderer::makeCompose()
     };
     // What is not made is not read: anything may be bound in its place.
     const Shown images[] = {{direct, true},
-                            {smoothDiffuse, effects.diffuse},
+                            {indirect->diffuse(), effects.diffuse},
                             {indirect->rough(), effects.rough},
                             {indirect->glossy(), effects.glossy},
                             {indirect->mirror(), effects.mirror},
@@ -302,6 +311,13 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     view.size = {settings.width, settings.height};
     view.glossyRays = settings.glossyRays;
     view.raysBelow = settings.raysBelow;
+    if (before)
+    {
+        view.follows = 1;
+        view.eyeBefore = before->eye;
+        view.clipFromWorldBefore = clipFromWorld(*before, basisOf(*before, settings.width, settings.height));
+    }
+    before = camera;
     view.normalOffset = settings.normalOffset * space.diagonal * space.scale;
 
     if (timer) timer->begin(cmd, "G-buffer");
@@ -399,10 +415,10 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
 uint64_t SceneRenderer::deviceBytes() const
 {
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    return indirect->deviceBytes() + (smoothDiffuse ? 16 * pixels : 0);
+    return indirect->deviceBytes() + (scratch ? 16 * pixels : 0) + denoiser.deviceBytes();
 }
 
-Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
+Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
 {
     auto timer = GpuTimer::create(gpu, 16);
     if (!timer) return timer.error();
@@ -410,7 +426,7 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera)
         [&](VkCommandBuffer cmd)
         {
             timer->reset(cmd);
-            record(cmd, camera, settings.seed, &*timer);
+            record(cmd, camera, settings.seed + index, &*timer);
         });
     if (!status) return status.error();
 

@@ -46,7 +46,10 @@ public:
     /// Records G-buffer, direct light, indirect light and composition.
     void record(VkCommandBuffer cmd, const Camera& camera, uint32_t seed, GpuTimer* timer);
     /// Records, submits, waits and reads every picture back.
-    Result<RenderedFrame> render(const Camera& camera);
+    /// @param index  of the frame in a sequence: added to the seed
+    Result<RenderedFrame> render(const Camera& camera, uint32_t index = 0);
+    /// The next frame doesn't follow the one before: the camera is cut.
+    void cut() { before.reset(); }
     /// Bytes of the images and buffers of indirect light, as many as its effects call for.
     uint64_t deviceBytes() const;
 
@@ -68,10 +71,11 @@ private:
     const DeviceScene& scene;
     const LightField& field;
     RenderSettings settings;
-    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, smoothDiffuse, diffuseLayer, glossyLayer;
+    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, scratch, diffuseLayer, glossyLayer;
     Pipeline gBufferPass, directPass, areaPass, composePass;
     DescriptorSet directSet, areaSet, composeSet;
     Denoiser denoiser;
+    std::optional<Camera> before; // the camera of the frame before
     Buffer frameBlock;
     FrameInputs gBuffer;
     std::optional<IndirectLight> indirect;

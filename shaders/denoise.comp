@@ -5,12 +5,13 @@
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
 
-// One step of a cross-bilateral filter over the G-buffer: 5x5 taps of a B3 spline, `stride` pixels apart; steps of stride 1, 2, 4 reach 14
-// pixels (Dammertz et al. 2010, "Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering"). McGuire et al. 2017,
-// section 5.1, filter glossy light narrowly and diffuse light widely: here a glossy pixel's reach follows its roughness.
+// One step of a cross-bilateral filter over the G-buffer: 3x3 taps, `stride` pixels apart; steps of stride 1, 2, 4, 8 reach 15 pixels (Dammertz
+// et al. 2010, "Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering", with 5x5 taps in 3 steps: twice the reads).
+// McGuire et al. 2017, section 5.1, filter glossy light narrowly and diffuse light widely: here a glossy pixel's reach follows its roughness.
 // Only pixels that have the term are read. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 1) const uint kTerm = kTermGlossy;
+layout(constant_id = 2) const bool kBlended = false; // the light's a is the number of frames blended into it (temporal.comp)
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D noisy;
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D smooth_;
 layout(scalar, push_constant) uniform Push
@@ -19,8 +20,8 @@ layout(scalar, push_constant) uniform Push
     int followRoughness; // 1: the reach shrinks with roughness, to nothing for a mirror
 };
 
-const float kReach = 14.0;                                    // pixels, of all steps together
-const float kSpline[3] = float[](3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0);
+const float kReach = 15.0; // pixels, of all steps together
+const float kHat[2] = float[](1.0 / 2.0, 1.0 / 4.0);
 
 void main()
 {
@@ -31,6 +32,7 @@ void main()
     vec4 own = imageLoad(noisy, at);
     float reach = kReach;
     if (followRoughness != 0) reach *= clamp(2.5 * p.brdf.roughness - 0.05, 0.0, 1.0) * inversesqrt(float(frame.glossyRays)); // as the noise falls
+    if (kBlended) reach = max(reach * inversesqrt(max(own.a, 1.0)), min(reach, 2.0));
     if (!p.surface || reach < float(stride))
     {
         imageStore(smooth_, at, own);
@@ -39,8 +41,8 @@ void main()
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     float toEye = distance(p.position, frame.eye);
-    for (int dy = -2; dy <= 2; ++dy)
-        for (int dx = -2; dx <= 2; ++dx)
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
         {
             ivec2 tap = at + stride * ivec2(dx, dy);
             if (float(stride * stride * (dx * dx + dy * dy)) > reach * reach || any(lessThan(tap, ivec2(0))) ||
@@ -50,7 +52,7 @@ void main()
             float plane = abs(dot(q.position - p.position, p.normal)) / (0.01 * toEye);
             float facing = max(dot(p.normal, q.normal), 0.0);
             float rough = abs(p.brdf.roughness - q.brdf.roughness) * 8.0;
-            float weight = kSpline[abs(dx)] * kSpline[abs(dy)] * exp(-plane * plane - rough * rough) * pow(facing, 32.0);
+            float weight = kHat[abs(dx)] * kHat[abs(dy)] * exp(-plane * plane - rough * rough) * pow(facing, 32.0);
             sum += weight * imageLoad(noisy, tap).rgb;
             weights += weight;
         }

@@ -40,21 +40,33 @@ void main()
     TangentFrame tangents = tangentFrame(p.normal);
     float alpha = ggxAlpha(p.brdf.roughness);
     Lobe lobe = reflectedLobe(p.normal, p.view, alpha);
-    vec3 diffuseSum = vec3(0.0), lobeSum = vec3(0.0);
-    float weight = 0.0;
+
+    // The weight of a probe doesn't depend on the look-up that named it: each is asked once, and counted as often as it was named.
+    uint named[kLookUps * kRanked];
+    float times[kLookUps * kRanked];
+    uint count = 0u;
     for (uint i = 0u; i < kLookUps; ++i)
     {
         vec2 along = (randomPair(uvec2(at), i, 1u, frame.seed) - 0.5) * 2.0 * field.voxel;
         int reads = 0;
-        vec3 lookUp = point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal;
-        GatheredLight light = gatherLight(point, p.normal, lookUp, lobe, wantDiffuse, wantRough, reads);
-        diffuseSum += light.diffuse;
-        lobeSum += light.lobe;
-        weight += light.weight;
+        uvec4 ranked = rankedProbesAt(point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal, reads);
+        for (uint k = 0u; k < uint(kRanked); ++k)
+        {
+            bool repeated = false;
+            for (uint j = 0u; j < k; ++j) repeated = repeated || ranked[j] == ranked[k];
+            if (repeated) continue;
+            uint found = 0u;
+            while (found < count && named[found] != ranked[k]) ++found;
+            if (found == count) named[count] = ranked[k], times[count++] = 0.0;
+            times[found] += 1.0;
+        }
     }
-    weight = max(weight, 1e-30);
-    if (wantDiffuse) imageStore(diffuse, at, vec4(diffuseSum / weight, 1.0));
+    GatheredLight light = noLight();
+    if (canGather(point, p.normal))
+        for (uint i = 0u; i < count; ++i) gatherProbe(named[i], point, p.normal, lobe, times[i], wantDiffuse, wantRough, light);
+    float weight = max(light.weight, 1e-30);
+    if (wantDiffuse) imageStore(diffuse, at, vec4(light.diffuse / weight, 1.0));
     if (!wantRough) return;
     vec2 share = reflectedShare(dot(p.normal, p.view), alpha);
-    imageStore(rough, at, vec4(lobeSum / weight * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));
+    imageStore(rough, at, vec4(light.lobe / weight * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));
 }

@@ -19,8 +19,13 @@ const char* chartName(uint32_t chart)
 
 Json bytesJson(const FieldBytes& bytes)
 {
-    return {{"total", bytes.total()},           {"distance", bytes.distance},     {"normals", bytes.normals}, {"radiance", bytes.radiance},
-            {"prefiltered", bytes.prefiltered}, {"irradiance", bytes.irradiance}, {"index", bytes.index}};
+    return {{"total", bytes.total()},
+            {"distance", bytes.distance},
+            {"normals", bytes.normals},
+            {"radiance", bytes.radiance},
+            {"irradiance", bytes.irradiance},
+            {"index", bytes.index},
+            {"prefiltered_radiance", bytes.prefiltered}};
 }
 
 std::string megabytes(size_t bytes)

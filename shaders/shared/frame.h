@@ -13,8 +13,11 @@ struct FrameView
     uint glossyRays;     // rays a pixel, 1..64
     float normalOffset;  // metres a ray starts off its surface; 1e-4 of the scene's diagonal
     float raysBelow;     // roughness: reflections below it are traced, above it read from prefiltered radiance; default kRaysBelow
+    uint follows;        // 1: the frame follows the one that was recorded before; 0: it is the first, or the camera was cut
+    vec3 eyeBefore;      // of the frame before, world, metres
+    mat4 clipFromWorldBefore; // x and y in [-1,1] over the picture before, w > 0 in front of the camera
 };
-SCONCE_CHECK_SIZE(FrameView, 100);
+SCONCE_CHECK_SIZE(FrameView, 180);
 
 const uint kEnvironmentBrdfSide = 32u; // entries a side of the table of runtime/environment_brdf.h
 

@@ -100,8 +100,8 @@ SCONCE_FN bool hiddenFromProbe(uint probe, vec3 p)
     return uvw.z * q > real(1.002);
 }
 
-/// What the probes of a leaf say of the light at a surface point, weighted; look-ups are added before they are divided by the weight, so
-/// that a leaf behind a wall, whose probes are all hidden, has no say.
+/// What probes say of the light at a surface point, weighted; all are added before they are divided by the weight, so that a leaf behind a
+/// wall, whose probes are all hidden, has no say.
 struct GatheredLight
 {
     vec3 diffuse; // weight times cosine-weighted mean of the arriving radiance (irradiance / pi)
@@ -121,59 +121,69 @@ SCONCE_FN vec3 lobeRadiance(uint probe, vec3 fromProbe, SCONCE_IN(Lobe) lobe)
     return prefilteredRadiance(probe, away > real(1e-6) ? met / away : lobe.direction, min(lobe.width * t / away, real(1.5)));
 }
 
-/// The light at a surface point from the probes of a leaf: diffuse, and in a lobe where one is asked for. Weights: wrapped cosine towards the
-/// probe (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields"), Chebyshev visibility from the
-/// distance moments (McGuire et al. 2017, section 5.2; cubed as in the former), nothing from a probe whose map shows a surface before the
-/// point, and the inverse square of the distance, since the probes are no grid. Nothing for a point or normal that is not finite, and for a
-/// normal without length. Cost: at most 4 probes of 9 reads, 12 more with a lobe.
-/// @param lookUp  point whose leaf is asked; the caller may dither it about the point to hide borders of voxels
-/// @param wantDiffuse, wantLobe  constants of the caller: what is not wanted is not read
-SCONCE_FN GatheredLight gatherLight(vec3 point, vec3 normal, vec3 lookUp, SCONCE_IN(Lobe) lobe, bool wantDiffuse, bool wantLobe,
-                                    SCONCE_INOUT(int) reads)
+SCONCE_FN GatheredLight noLight()
 {
-    GatheredLight gathered;
-    gathered.diffuse = vec3(real(0.0));
-    gathered.lobe = vec3(real(0.0));
-    gathered.weight = real(0.0);
+    GatheredLight none;
+    none.diffuse = vec3(real(0.0));
+    none.lobe = vec3(real(0.0));
+    none.weight = real(0.0);
+    return none;
+}
+
+/// Whether light can be gathered at a point: not for a point or normal that is not finite, nor for a normal without length.
+SCONCE_FN bool canGather(vec3 point, vec3 normal)
+{
     real length2 = dot(normal, normal);
-    if (!(length2 > real(1e-12)) || !(length2 + dot(point, point) < real(1e18))) return gathered;
-    uvec4 ranked = rankedProbesAt(lookUp, reads);
+    return length2 > real(1e-12) && length2 + dot(point, point) < real(1e18);
+}
+
+/// Adds what one probe says of the light at a surface point: diffuse, and in a lobe where one is asked for. Weights: wrapped cosine towards
+/// the probe (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields"), Chebyshev visibility from the
+/// distance moments (McGuire et al. 2017, section 5.2; cubed as in the former), nothing from a probe whose map shows a surface before the
+/// point, and the inverse square of the distance, since the probes are no grid. Cost: 9 reads, 12 more with a lobe.
+/// @param times  how often the probe is counted
+/// @param wantDiffuse, wantLobe  constants of the caller: what is not wanted is not read
+SCONCE_FN void gatherProbe(uint probe, vec3 point, vec3 normal, SCONCE_IN(Lobe) lobe, real times, bool wantDiffuse, bool wantLobe,
+                           SCONCE_INOUT(GatheredLight) gathered)
+{
     vec3 biased = point + real(0.002) * real(field.diagonal) * normal;
+    vec3 toProbe = vec3(probeHeader(probe).centre) - biased;
+    real distance2 = max(dot(toProbe, toProbe), real(1e-12));
+    real distance = sqrt(distance2);
+    vec3 direction = distance2 > real(1e-12) ? toProbe / distance : normal; // at the centre any direction will do
+    real wrap = real(0.5) * dot(direction, normal) + real(0.5);
+    real weight = wrap * wrap + real(0.02);
+    vec2 moments = probeMoments(probe, -direction);
+    if (distance > moments.x)
+    {
+        real beyond = distance - moments.x;
+        real spread = max(moments.y, real(0.0)) + real(1e-6);
+        real chebyshev = spread / (spread + beyond * beyond);
+        weight *= chebyshev * chebyshev * chebyshev;
+    }
+    if (hiddenFromProbe(probe, -toProbe)) weight = real(0.0);
+    weight = times * max(weight, real(1e-6)) / (distance2 + real(field.voxel) * real(field.voxel));
+    if (wantDiffuse) gathered.diffuse += weight * probeIrradiance(probe, normal);
+    if (wantLobe) gathered.lobe += weight * lobeRadiance(probe, -toProbe, lobe);
+    gathered.weight += weight;
+}
+
+/// Cosine-weighted mean of the radiance arriving at a surface point (irradiance / pi; multiply by the diffuse albedo) from the probes of one
+/// leaf; see gatherProbe. Black where nothing can be gathered.
+/// @param lookUp  point whose leaf is asked
+SCONCE_FN vec3 irradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    GatheredLight gathered = noLight();
+    if (!canGather(point, normal)) return gathered.diffuse;
+    Lobe none;
+    none.direction = normal;
+    none.width = real(0.0);
+    uvec4 ranked = rankedProbesAt(lookUp, reads);
     for (int k = 0; k < kRanked; ++k)
     {
         bool repeated = false;
         for (int j = 0; j < k; ++j) repeated = repeated || ranked[j] == ranked[k];
-        if (repeated) continue;
-        vec3 toProbe = vec3(probeHeader(ranked[k]).centre) - biased;
-        real distance2 = max(dot(toProbe, toProbe), real(1e-12));
-        real distance = sqrt(distance2);
-        vec3 direction = distance2 > real(1e-12) ? toProbe / distance : normal; // at the centre any direction will do
-        real wrap = real(0.5) * dot(direction, normal) + real(0.5);
-        real weight = wrap * wrap + real(0.02);
-        vec2 moments = probeMoments(ranked[k], -direction);
-        if (distance > moments.x)
-        {
-            real beyond = distance - moments.x;
-            real spread = max(moments.y, real(0.0)) + real(1e-6);
-            real chebyshev = spread / (spread + beyond * beyond);
-            weight *= chebyshev * chebyshev * chebyshev;
-        }
-        if (hiddenFromProbe(ranked[k], -toProbe)) weight = real(0.0);
-        weight = max(weight, real(1e-6)) / (distance2 + real(field.voxel) * real(field.voxel));
-        if (wantDiffuse) gathered.diffuse += weight * probeIrradiance(ranked[k], normal);
-        if (wantLobe) gathered.lobe += weight * lobeRadiance(ranked[k], -toProbe, lobe);
-        gathered.weight += weight;
+        if (!repeated) gatherProbe(ranked[k], point, normal, none, real(1.0), true, false, gathered);
     }
-    return gathered;
-}
-
-/// Cosine-weighted mean of the radiance arriving at a surface point (irradiance / pi; multiply by the diffuse albedo) by one look-up; see
-/// gatherLight.
-SCONCE_FN vec3 irradianceAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
-{
-    Lobe none;
-    none.direction = normal;
-    none.width = real(0.0);
-    GatheredLight gathered = gatherLight(point, normal, lookUp, none, true, false, reads);
     return gathered.diffuse / max(gathered.weight, real(1e-30));
 }

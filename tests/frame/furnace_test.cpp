@@ -14,14 +14,14 @@ namespace
 
 using namespace testing_support;
 
-constexpr uint32_t kSide = 64; // pixels
+constexpr uint32_t kSide = 40; // pixels
 
 Scene ball(vec3 color, float roughness, float metallic)
 {
     Scene scene;
     scene.name = "ball";
     MeshBuilder mesh(scene);
-    mesh.sphere(vec3(0.0f), 1.0f, 128, 64, mesh.material("white", color, roughness, metallic));
+    mesh.sphere(vec3(0.0f), 1.0f, 96, 48, mesh.material("white", color, roughness, metallic));
     mesh.camera("view", vec3(0, 0, 4), vec3(0.0f), 24.0f); // the ball fills most of the picture
     scene.sky = vec3(1.0f);
     return scene;
@@ -38,16 +38,16 @@ TEST_F(FurnaceTest, ReflectsWhatThePathTracerSaysWithinOnePercent)
          {std::pair{0.0f, 1.0f}, {0.2f, 1.0f}, {0.3f, 0.0f}, {0.4f, 1.0f}, {0.6f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}})
     {
         const Scene scene = ball(vec3(1.0f), roughness, metallic);
-        const auto field = bakeField(scene, probes, 128, 0);
+        const auto field = bakeField(scene, probes, 64, 0);
         ASSERT_TRUE(field) << field.error().message;
         RenderSettings settings = settingsOf(kSide);
-        settings.glossyRays = 16;
+        settings.glossyRays = 8;
         settings.areaSamples = 64;
         const auto frame = drawWith(*field, scene, settings);
         ASSERT_TRUE(frame) << frame.error().message;
         ReferenceSettings reference;
         reference.width = reference.height = kSide;
-        reference.samples = 256;
+        reference.samples = 144;
         reference.pixelCentre = true;
         reference.camera = scene.cameras.front();
         const ImageSet truth = std::move(renderReference(scene, reference)->images);

@@ -201,7 +201,7 @@ TEST(Command, PlaceHonoursPinsAndMemory)
     // What a probe takes is what a bake of one says it takes.
     ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "one.json", "--grid", "1x1x1", "-q"}).exit, 0);
     const json baked = jsonOf(sconceCommand({"bake", "cornell", "--probes", folder / "one.json", "-o", folder / "one.sconce",
-                                             "--resolution", "64", "--bounces", "0", "--json"}));
+                                             "--resolution", "64", "--bounces", "0", "--effects", "all", "--json"}));
     const json bytes = baked.at("bytes");
     const uint64_t maps = bytes.at("total").get<uint64_t>() - bytes.at("index").get<uint64_t>();
     EXPECT_EQ(jsonOf(place({"--resolution", "64", "--memory", std::to_string(maps * 4 + maps / 2)})).at("probes"), 4);
@@ -239,7 +239,8 @@ TEST(Command, PipelineFromSceneToHits)
     EXPECT_EQ(bytes.at("total").get<size_t>(), bytes.at("distance").get<size_t>() + bytes.at("normals").get<size_t>() +
                                                    bytes.at("radiance").get<size_t>() + bytes.at("irradiance").get<size_t>() +
                                                    bytes.at("index").get<size_t>());
-    EXPECT_EQ(bytes.at("radiance").get<size_t>(), 6u * 6 * 64 * 64 * 4);
+    EXPECT_EQ(bytes.at("radiance"), bytes.at("prefiltered_radiance")) << "no ray is traced in cornell: its surfaces are rough";
+    EXPECT_GT(bytes.at("radiance").get<size_t>(), 0u);
     for (const char* key : {"leaves", "nodes", "depth"}) EXPECT_GT(info.at("octree").at(key).get<int>(), 0) << key;
 
     EXPECT_EQ(jsonOf(sconceCommand({"verify", folder / "f.sconce", "--json"})).at("ok"), true);

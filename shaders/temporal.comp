@@ -1,0 +1,88 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_scalar_block_layout : require
+#include "gbuffer_read.glsl"
+#include "shared/texel.h"
+#include "shared/chart.h"
+#include "tiles.glsl"
+
+// Blends a term's light with what the frame before had for the same point (McGuire et al. 2017, section 5.1, reproject likewise; Karis 2014,
+// "High Quality Temporal Supersampling", for the clamp to the neighbourhood). A smooth surface's light is followed where its reflection
+// moves: at the mirrored hit behind the surface, as far as the ray went. Dispatch: see findPixel.
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 1) const uint kTerm = kTermGlossy;
+layout(set = 1, binding = 4, rgba32f) uniform image2D light;              // rgb; a: of the glossy term the distance of the hit, metres
+layout(set = 1, binding = 5, rgba32f) readonly uniform image2D before;    // rgb, a: frames blended
+layout(set = 1, binding = 6, rg32ui) readonly uniform uimage2D pointsBefore;
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D after;
+layout(set = 1, binding = 9, rg32ui) writeonly uniform uimage2D pointsAfter; // distance to the eye, metres, as bits; normal of 2 x 8 bits, term
+
+const float kLongest = 32.0;     // frames a history counts for: 97 % of a still picture is the past (the paper: 98 %)
+const float kLongestGlossy = 8.0; // of a sharp reflection: 88 % (the paper: 75 %)
+
+/// Mean and deviation of the term's light in the 3x3 pixels about one.
+void neighbourhood(ivec2 at, out vec3 mean, out vec3 deviation)
+{
+    vec3 sum = vec3(0.0), squares = vec3(0.0);
+    float count = 0.0;
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+        {
+            ivec2 tap = clamp(at + ivec2(dx, dy), ivec2(0), ivec2(frame.size) - 1);
+            if ((termsOf(readPixel(tap)) & (1u << kTerm)) == 0u) continue;
+            vec3 value = imageLoad(light, tap).rgb;
+            sum += value;
+            squares += value * value;
+            count += 1.0;
+        }
+    mean = sum / max(count, 1.0);
+    deviation = sqrt(max(squares / max(count, 1.0) - mean * mean, vec3(0.0)));
+}
+
+/// The frame before at a point of its picture, of those pixels that showed the same surface; a: frames blended, 0 where none did.
+vec4 history(vec2 pixel, float distanceBefore, vec3 normal)
+{
+    vec4 sum = vec4(0.0);
+    float weights = 0.0;
+    ivec2 low = ivec2(floor(pixel - 0.5));
+    vec2 f = pixel - 0.5 - vec2(low);
+    for (int i = 0; i < 4; ++i)
+    {
+        ivec2 tap = low + ivec2(i & 1, i >> 1);
+        if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
+        uvec2 point = imageLoad(pointsBefore, tap).xy;
+        if ((point.y >> 16) != kTerm + 1u) continue;
+        bool sameDepth = abs(uintBitsToFloat(point.x) - distanceBefore) < 0.02 * distanceBefore;
+        if (!sameDepth || dot(unpackNormal8(point.y), normal) < 0.9) continue;
+        float weight = ((i & 1) != 0 ? f.x : 1.0 - f.x) * ((i >> 1) != 0 ? f.y : 1.0 - f.y);
+        sum += weight * imageLoad(before, tap);
+        weights += weight;
+    }
+    return weights > 0.05 ? sum / weights : vec4(0.0);
+}
+
+void main()
+{
+    ivec2 at;
+    if (!findPixel(kTerm, at)) return;
+    Pixel p = readPixel(at);
+    if ((termsOf(p) & (1u << kTerm)) == 0u) return;
+    vec4 own = imageLoad(light, at);
+    vec4 past = vec4(0.0);
+    bool sharp = kTerm == kTermGlossy && p.brdf.roughness < 0.25;
+    if (frame.follows != 0u)
+    {
+        vec3 seen = sharp ? p.position - own.a * p.view : p.position; // the hit, mirrored: on the line of sight, behind the surface
+        vec4 clip = frame.clipFromWorldBefore * vec4(seen, 1.0);
+        if (clip.w > 0.0)
+            past = history((0.5 * clip.xy / clip.w + 0.5) * vec2(frame.size), distance(p.position, frame.eyeBefore), p.normal);
+    }
+    vec3 mean, deviation;
+    neighbourhood(at, mean, deviation);
+    past.rgb = clamp(past.rgb, mean - 2.0 * deviation, mean + 2.0 * deviation);
+    float frames = min(past.a + 1.0, sharp ? kLongestGlossy : kLongest);
+    vec3 blended = mix(past.rgb, own.rgb, 1.0 / frames);
+    imageStore(after, at, vec4(blended, frames));
+    imageStore(pointsAfter, at, uvec4(floatBitsToUint(distance(p.position, frame.eye)), packNormal8(p.normal) | ((kTerm + 1u) << 16), 0u, 0u));
+}
