@@ -69,7 +69,8 @@ public:
     Result<Live> enliven(const PlannedPoint& point, const Progress& progress);
     /// Rays, errors and pictures: everything but times.
     Result<Json> measure(Live& live, const Progress& progress);
-    /// One frame, by the device's clock or, path traced, by the host's: pass and milliseconds.
+    /// One frame: passes and milliseconds, by the device's clock. Where the CPU does the work (path tracer, software Vulkan): by the CPU
+    /// time of all threads divided by the cores, which what else the machine does hardly touches.
     using Passes = std::vector<std::pair<std::string, double>>;
     Result<Passes> timeFrame(Live& live, uint32_t turn);
 
@@ -86,6 +87,7 @@ private:
     SceneBench(Gpu& device, std::string deviceName, Desc made);
     std::filesystem::path cached(const char* kind, const std::string& key, const char* extension) const;
     std::string pointKey(const PlannedPoint& point) const;
+    bool software() const; // the device is the CPU
     std::optional<BenchProbes> keptProbes(const PointSettings& settings) const;
     Result<BenchProbes> probesFor(const PointSettings& settings, const Progress& progress);
     Result<FieldData> fieldFor(const PointSettings& settings, Json& cost, const Progress& progress);

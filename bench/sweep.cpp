@@ -16,7 +16,7 @@ constexpr const char* kTimes[] = {"trace_ms", "frame_ms"}; // the frame's scale 
 
 struct Timing
 {
-    std::vector<double> frame, trace, cpu; // milliseconds
+    std::vector<double> frame, trace; // milliseconds
     std::map<std::string, std::vector<double>> passes;
     std::vector<std::string> order; // of the passes in a frame
 
@@ -26,11 +26,6 @@ struct Timing
         bool hasTrace = false;
         for (const auto& [name, milliseconds] : frameOf)
         {
-            if (name == "cpu") // of all threads, beside the pass's wall-clock
-            {
-                cpu.push_back(milliseconds);
-                continue;
-            }
             sum += milliseconds;
             if (name.find("glossy trace") != std::string::npos) traced += milliseconds, hasTrace = true;
             if (!passes.contains(name)) order.push_back(name);
@@ -203,7 +198,6 @@ private:
             Json& record = *records[i];
             record["frame_ms"] = timesJson(timings[k].frame);
             if (!timings[k].trace.empty()) record["trace_ms"] = timesJson(timings[k].trace);
-            if (!timings[k].cpu.empty()) record["cpu_ms"] = timesOf(timings[k].cpu).median;
             record["passes_ms"] = Json::object();
             for (const std::string& pass : timings[k].order) record["passes_ms"][pass] = timesOf(timings[k].passes[pass]).median;
             record["yardstick_ms"] = {{"frame_ms", frameYardstick}, {"trace_ms", traceYardstick}};
