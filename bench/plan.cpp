@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <bit>
 
+#include "bench/tune.h"
+
 namespace sconce
 {
 namespace
 {
+
+const std::string kLevelKnob = "level"; // the named quality levels
 
 struct Opponent
 {
@@ -48,6 +52,14 @@ public:
         if (std::ranges::none_of(points, same)) points.push_back(std::move(point));
     }
 
+    void addLevel(const PointSettings& base, const QualityLevel& level)
+    {
+        if (!wants(base) || (!plan.knobs.empty() && std::ranges::find(plan.knobs, kLevelKnob) == plan.knobs.end())) return;
+        const std::string value(level.name);
+        points.push_back({base.method + "/" + kLevelKnob + "=" + value, kLevelKnob, value, base});
+        applyLevel(points.back().settings, level);
+    }
+
     void addProbeCounts(const PointSettings& base, std::initializer_list<double> factors)
     {
         for (const double factor : factors)
@@ -70,11 +82,11 @@ private:
 Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
 {
     for (const std::string& name : settings.knobs)
-        if (!findKnob(name))
+        if (!findKnob(name) && name != kLevelKnob)
         {
             std::string known;
-            for (const Knob& knob : knobs()) known += (known.empty() ? "" : ", ") + std::string(knob.name);
-            return Error{ErrorCode::badArgument, "There is no knob '" + name + "'; there are: " + known + "."};
+            for (const Knob& knob : knobs()) known += std::string(knob.name) + ", ";
+            return Error{ErrorCode::badArgument, "There is no knob '" + name + "'; there are: " + known + kLevelKnob + "."};
         }
     Planner planner(settings);
     PointSettings ours = settings.ours;
@@ -102,6 +114,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
     for (const Knob& knob : knobs())
         if (std::ranges::find(knob.methods, ours.method) != knob.methods.end())
             for (const std::string_view value : knob.sweep) planner.addVaried(ours, knob, std::string(value));
+    for (const QualityLevel& level : qualityLevels()) planner.addLevel(ours, level);
     for (size_t i = 0; i < theirs.size(); ++i)
     {
         planner.addProbeCounts(theirs[i], {0.5, 2.0});

@@ -12,6 +12,7 @@
 #include "bench/metrics.h"
 #include "bench/picture_files.h"
 #include "bench/point_json.h"
+#include "bench/ray_file.h"
 #include "bench/scene_rays.h"
 #include "runtime/bake.h"
 #include "runtime/field_space.h"
@@ -63,15 +64,14 @@ Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string dev
 {
     if (std::string fault = validate(desc.scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
     std::unique_ptr<SceneBench> made(new SceneBench(gpu, std::move(deviceName), std::move(desc)));
-    for (const char* kind : {"probes", "fields", "references", "points"})
+    for (const char* name : {"cache/probes", "cache/fields", "cache/references", "cache/points", "images", "replay"})
     {
         std::error_code problem;
-        std::filesystem::create_directories(made->cached(kind, "", "").parent_path(), problem);
+        std::filesystem::create_directories(made->desc.folder / name, problem);
         if (problem)
             return Error{ErrorCode::fileError, "The folder '" + made->desc.folder.string() + "' can't be made: " + problem.message() +
                                                    "; give another one with -o."};
     }
-    std::filesystem::create_directories(made->desc.folder / "images");
     if (made->desc.camera)
         made->camera = *made->desc.camera;
     else if (!made->desc.scene.cameras.empty())
@@ -178,6 +178,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
         if (auto field = loadField(file))
         {
             cost.update(*known);
+            cost["field"] = std::filesystem::relative(file, desc.folder).string();
             return field;
         }
     std::vector<vec3> positions;
@@ -192,6 +193,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     if (auto status = saveField(*field, file); !status) return status.error();
     if (auto status = writeText(cached("fields", key, ".json"), baked.dump()); !status) return status.error();
     cost.update(baked);
+    cost["field"] = std::filesystem::relative(file, desc.folder).string();
     return field;
 }
 
@@ -275,7 +277,7 @@ Status SceneBench::prepare(const Progress& progress)
     auto set = sceneRays(desc.scene, *truth, desc.settings.rays, desc.settings.seed);
     if (!set) return set.error();
     rays = std::move(*set);
-    return success();
+    return saveRays(*rays, desc.folder / "replay" / (desc.name + ".rays"));
 }
 
 uint64_t SceneBench::bytesOf(const PointSettings& settings)

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string_view>
+
 #include "shaders/shared/light_field.h"
 
 namespace sconce
@@ -19,5 +23,25 @@ struct Quality
         .farBounds = 0,     // 1: read the far bounds, too, and end early behind them; the same results. Fixed in a pass when it is made
     };
 };
+
+/// A named choice of every knob but the number of probes, with what it was measured to cost (docs/bench.md). A host bakes with the first
+/// two, makes its LightField with `quality`, and draws with the rest.
+struct QualityLevel
+{
+    std::string_view name; // draft, low, medium, high, reference
+    uint32_t resolution;   // of the bake, texels
+    uint32_t bounces;      // of the bake
+    Quality quality;       // of LightField::create
+    uint32_t glossyRays;   // a pixel
+    uint32_t areaSamples;  // a pixel
+    bool denoise;
+    float time, memory,
+        error; // of a frame, of the light field, of the picture (FLIP), times those of `medium`; mean over docs/bench.md's scenes
+};
+
+/// From the cheapest to the best.
+std::span<const QualityLevel> qualityLevels();
+/// Null when there is no such name.
+const QualityLevel* findQualityLevel(std::string_view name);
 
 } // namespace sconce

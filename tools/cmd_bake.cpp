@@ -8,6 +8,7 @@
 #include "runtime/light_field_file.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
+#include "tools/quality_option.h"
 
 namespace sconce::tools
 {
@@ -21,6 +22,7 @@ struct BakeOptions
     BakeSettings settings;
     std::string probes, output, device, effects = "auto";
     uint64_t memoryMb = 0;
+    QualityOption quality;
 };
 
 int runBake(const BakeOptions& options, const Context& context)
@@ -33,6 +35,14 @@ int runBake(const BakeOptions& options, const Context& context)
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device, .memoryBudget = options.memoryMb << 20});
     if (!device) return fail(device.error());
     BakeSettings settings = options.settings;
+    const Result<std::optional<PointSettings>> quality = options.quality.load();
+    if (!quality) return fail(quality.error());
+    if (*quality)
+    {
+        options.quality.take("--resolution", settings.resolution, (*quality)->resolution);
+        options.quality.take("--bounces", settings.bounces, (*quality)->bounces);
+        settings.octree.voxels = (*quality)->octreeVoxels;
+    }
     settings.grid = set->grid;
     const Result<EffectPlan> plan = planEffects(checkScene(*scene), options.effects);
     if (!plan) return fail(plan.error());
@@ -104,6 +114,7 @@ void addBakeCommand(CLI::App& app, Context& context)
                      "mirror the file holds no radiance for traced rays: half of its size (default: auto)")
         ->type_name("auto|all|none|LIST");
     addDevice(bake, options->device);
+    options->quality.add(bake);
     onChosen(bake, context, options, runBake);
 }
 

@@ -5,7 +5,7 @@
 #include "bench/image_io.h"
 #include "placement/place.h"
 #include "runtime/field_data.h"
-#include "tools/common.h"
+#include "tools/quality_option.h"
 
 namespace sconce::tools
 {
@@ -22,6 +22,7 @@ struct PlaceOptions
     std::string pins;
     uint64_t memory = 0;       // bytes; 0: no budget
     uint32_t resolution = 512; // what the budget is counted for
+    QualityOption quality;
 };
 
 /// As many probes as the budget holds. Errors: badArgument with the bytes that one needs.
@@ -39,9 +40,18 @@ int runPlace(const PlaceOptions& options, const Context& context)
 {
     const Stopwatch watch;
     PlaceSettings settings = options.settings;
+    uint32_t resolution = options.resolution;
+    const Result<std::optional<PointSettings>> quality = options.quality.load();
+    if (!quality) return fail(quality.error());
+    if (*quality)
+    {
+        options.quality.take("--resolution", resolution, (*quality)->resolution);
+        if ((*quality)->probes > 0 && options.memory == 0 && settings.method != PlaceSettings::Method::grid)
+            options.quality.take("--count", settings.count, (*quality)->probes);
+    }
     if (options.memory > 0)
     {
-        const Result<uint32_t> count = countFor(options.memory, options.resolution);
+        const Result<uint32_t> count = countFor(options.memory, resolution);
         if (!count) return fail(count.error());
         settings.count = *count;
     }
@@ -188,6 +198,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
             "Least distance of a probe from every surface, sdf, metres (default: one cell of the distance field; range: 0 to 1000)")
         ->check(unlisted(CLI::Range(0.0f, 1000.0f)))
         ->type_name("METRES");
+    options->quality.add(command);
     onChosen(command, context, options, runPlace);
 }
 

@@ -128,6 +128,7 @@ void addRenderCommand(CLI::App& app, Context& context);
 void addTraceCommand(CLI::App& app, Context& context);
 void addReferenceCommands(CLI::App& app, Context& context);
 void addBenchCommand(CLI::App& app, Context& context);
+void addTuneCommand(CLI::App& app, Context& context);
 void addDoctorCommand(CLI::App& app, Context& context);
 
 } // namespace sconce::tools

@@ -22,6 +22,7 @@ int main(int argc, char** argv)
     addTraceCommand(app, context);
     addReferenceCommands(app, context);
     addBenchCommand(app, context);
+    addTuneCommand(app, context);
     addDoctorCommand(app, context);
     try
     {

@@ -30,7 +30,8 @@ TEST(Plan, BeginsWithOursAndHasEveryMethodAndKnobOnce)
     for (const PlannedPoint& point : *plan)
     {
         EXPECT_TRUE(ids.insert(point.id).second) << point.id;
-        EXPECT_TRUE(settings.insert(point.settings.method + settingsJson(point.settings).dump()).second) << point.id;
+        const bool fresh = settings.insert(point.settings.method + settingsJson(point.settings).dump()).second;
+        EXPECT_TRUE(fresh || point.knob == "level") << point.id; // a level may be what another knob measures
         methods.insert(point.settings.method);
         if (point.settings.method == "ours") knobsOfOurs.insert(point.knob);
     }

@@ -14,8 +14,8 @@ using nlohmann::json;
 namespace
 {
 
-const std::vector<std::string> kCommands = {"scenes", "doctor", "check", "place",     "bake",    "info",
-                                            "verify", "render", "trace", "reference", "compare", "bench"};
+const std::vector<std::string> kCommands = {"scenes", "doctor", "check",     "place",   "bake",  "info", "verify",
+                                            "render", "trace",  "reference", "compare", "bench", "tune"};
 
 /// stdout as JSON; a failure prints everything there was.
 json jsonOf(const CommandResult& result)

@@ -1,0 +1,31 @@
+#include "runtime/quality.h"
+
+#include <algorithm>
+
+namespace sconce
+{
+namespace
+{
+
+// Fewer ranked probes, hand-offs or a coarser hit rule cost rays and save nothing that could be measured: the tracer's own knobs stay at
+// their defaults in every level.
+constexpr QualityLevel kLevels[] = {
+    {"draft", 128, 1, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},      {"low", 192, 2, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},
+    {"medium", 256, 2, {}, 1, 8, true, 1.0f, 1.0f, 1.0f},     {"high", 416, 4, {}, 2, 16, true, 1.0f, 1.0f, 1.0f},
+    {"reference", 512, 8, {}, 8, 32, true, 1.0f, 1.0f, 1.0f},
+};
+
+} // namespace
+
+std::span<const QualityLevel> qualityLevels()
+{
+    return kLevels;
+}
+
+const QualityLevel* findQualityLevel(std::string_view name)
+{
+    const auto found = std::ranges::find(kLevels, name, &QualityLevel::name);
+    return found == std::end(kLevels) ? nullptr : found;
+}
+
+} // namespace sconce

@@ -1,0 +1,84 @@
+// sconce tune: settings from the measured front of a bench.
+#include <iostream>
+
+#include "bench/tune.h"
+#include "runtime/safe_file.h"
+#include "tools/common.h"
+
+namespace sconce::tools
+{
+
+namespace
+{
+
+struct TuneOptions
+{
+    std::string scene, results = "out/bench/results.json", output = "settings.json";
+    TuneGoal goal;
+};
+
+int runTune(const TuneOptions& options, const Context& context)
+{
+    const Result<Json> results = readResults(options.results);
+    if (!results) return fail(results.error());
+    std::string known;
+    for (const Json& scene : (*results)["scenes"])
+    {
+        const std::string name = scene["name"];
+        known += (known.empty() ? "" : ", ") + name;
+        if (name != options.scene && scene["source"] != options.scene) continue;
+        const Result<Json> point = tune(scene["points"].get<std::vector<Json>>(), options.goal);
+        if (!point && point.error().code == ErrorCode::badInput) // a goal that can't be met
+        {
+            std::cerr << "sconce: " << point.error().message << std::endl;
+            return exitThreshold;
+        }
+        if (!point) return fail(point.error());
+        const Json file = qualityFile(name, *point);
+        if (Status status = writeText(options.output, file.dump(1) + "\n"); !status) return fail(status.error());
+        if (context.json)
+            print(file);
+        else
+            std::cout << options.output << ": " << file["point"].get<std::string>() << ", " << file["price"].dump() << std::endl;
+        return exitOk;
+    }
+    return fail(ErrorCode::badArgument,
+                "'" + options.results + "' has no scene '" + options.scene + "'; it has: " + (known.empty() ? "none" : known) + ".");
+}
+
+} // namespace
+
+void addTuneCommand(CLI::App& app, Context& context)
+{
+    CLI::App* command =
+        addCommand(app, context, "tune", "Picks settings that keep to a time, an error or a memory from what `sconce bench` measured");
+    auto options = std::make_shared<TuneOptions>();
+    command->add_option("SCENE", options->scene, "Name of a scene of the results")->required()->type_name("");
+    command->add_option("--results", options->results, "What a bench measured (default: out/bench/results.json)")->type_name("FILE");
+    command
+        ->add_option("--time", options->goal.frameMs,
+                     "At most so many milliseconds a frame of the size that was measured (default: any; range: > 0)")
+        ->check(unlisted(CLI::PositiveNumber))
+        ->type_name("MS");
+    command
+        ->add_option("--error", options->goal.error,
+                     "At most so much of the metric; then the fastest is taken, else the most exact (default: any; range: > 0)")
+        ->check(unlisted(CLI::PositiveNumber))
+        ->type_name("E");
+    command->add_option("--memory", options->goal.bytes, "At most so many bytes of light field (default: any; range: > 0)")
+        ->check(unlisted(CLI::PositiveNumber))
+        ->type_name("BYTES");
+    command
+        ->add_option("--metric", options->goal.metric,
+                     "What the error is: wrong_rays, or beauty, diffuse or glossy with .mse, .relmse or .flip (default: glossy.relmse)")
+        ->check(unlisted(CLI::IsMember({"wrong_rays", "beauty.mse", "beauty.relmse", "beauty.flip", "diffuse.mse", "diffuse.relmse",
+                                        "diffuse.flip", "glossy.mse", "glossy.relmse", "glossy.flip"})))
+        ->type_name("NAME");
+    command
+        ->add_option("-o,--output", options->output,
+                     "File to write, for --quality of place, bake, render and trace (default: settings.json)")
+        ->type_name("FILE");
+    onChosen(command, context, options, runTune);
+}
+
+} // namespace sconce::tools
