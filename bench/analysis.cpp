@@ -78,6 +78,13 @@ bool isOurs(const Json& point)
     return point["method"] == "ours";
 }
 
+/// Whether it varies the frame alone (rays a pixel, filters): what any tracer's frame may have, and so no merit of one.
+bool variesTheFrame(const Json& point)
+{
+    const Knob* knob = findKnob(point["knob"].get<std::string>());
+    return point["knob"] == "level" || (knob && knob->stage == Stage::frame);
+}
+
 bool usable(const Json& point)
 {
     return !point.contains("wrong") || !point["wrong"].is_string();
@@ -145,10 +152,11 @@ public:
         for (const std::string_view key : kJudged)
         {
             if (!figureOf(their, key)) continue;
-            equalError(opponent, their, key, "frame_ms");
-            const Json* most = bestWithin(theirs, key, "frame_ms", std::numeric_limits<double>::infinity());
-            if (most && most != &their) equalError(opponent, *most, key, "frame_ms");
-            equalCost(opponent, their, key, "time", "frame_ms");
+            const std::string_view time = key == "wrong_rays" ? "trace_ms" : "frame_ms"; // other passes answer no rays
+            equalError(opponent, their, key, time);
+            const Json* most = bestWithin(theirs, key, time, std::numeric_limits<double>::infinity());
+            if (most && most != &their) equalError(opponent, *most, key, time);
+            equalCost(opponent, their, key, "time", time);
             if (!figureOf(their, "bytes")) continue; // the path tracer
             equalError(opponent, their, key, "bytes");
             equalCost(opponent, their, key, "memory", "bytes");
@@ -340,7 +348,7 @@ std::vector<std::string> paretoFront(std::span<const Json* const> points, std::s
 
 Json analyseScene(const std::vector<Json>& points)
 {
-    Points all, ours;
+    Points all, ours, oursTraced; // oursTraced: those that vary placement, bake or trace
     std::map<std::string, Points> opponents;
     const Json* base = nullptr;
     for (const Json& point : points)
@@ -350,6 +358,7 @@ Json analyseScene(const std::vector<Json>& points)
         if (isOurs(point))
         {
             ours.push_back(&point);
+            if (!variesTheFrame(point)) oursTraced.push_back(&point);
             if (point["knob"] == "default") base = &point;
         }
         else
@@ -359,11 +368,19 @@ Json analyseScene(const std::vector<Json>& points)
     for (const std::string_view error : kErrors)
         for (const std::string_view cost : kCosts)
             analysis["fronts"][std::string(error) + "|" + std::string(cost)] = paretoFront(all, error, cost);
-    Tables tables(ours, base);
-    for (const auto& [opponent, theirs] : opponents)
+    Tables tables(oursTraced, base), pathTables(ours, base);
+    for (auto& [opponent, theirs] : opponents)
+    {
+        if (opponent == kPathTracer)
+        {
+            for (const Json* point : theirs) pathTables.compareWith(opponent, {}, *point);
+            continue;
+        }
+        std::erase_if(theirs, [](const Json* point) { return variesTheFrame(*point); });
         for (const Json* point : theirs)
-            if ((*point)["knob"] == "default" || opponent == kPathTracer)
-                tables.compareWith(opponent, opponent == kPathTracer ? Points{} : theirs, *point);
+            if ((*point)["knob"] == "default") tables.compareWith(opponent, theirs, *point);
+    }
+    for (Json& row : pathTables.rows) tables.rows.push_back(std::move(row));
     analysis["equal"] = std::move(tables.rows);
     if (base) analysis["prices"] = pricesOf(ours, *base);
     return analysis;
@@ -377,7 +394,7 @@ std::vector<std::string> answersOf(const Json& results)
     };
     const Question questions[] = {
         {"error", "glossy.relmse", "frame_ms", "time", "For the glossy error of the opponent, Sconce's frame takes"},
-        {"error", "wrong_rays", "frame_ms", "trace", "For as few wrong rays as the opponent, Sconce's trace takes"},
+        {"error", "wrong_rays", "trace_ms", "trace", "For as few wrong rays as the opponent, Sconce's trace takes"},
         {"probes", "glossy.relmse", nullptr, "wrong_rays", "With as many probes, Sconce answers wrongly"},
         {"probes", "glossy.relmse", nullptr, "error", "With as many probes, Sconce's glossy error is"},
         {"error", "glossy.relmse", "bytes", "memory", "For the glossy error of the opponent, Sconce's light field takes"},

@@ -7,11 +7,11 @@ namespace sconce
 namespace
 {
 
-// Fewer ranked probes, hand-offs or a coarser hit rule cost rays and save nothing that could be measured: the tracer's own knobs stay at
-// their defaults in every level.
+// The tracer's own knobs stay at their defaults in every level: fewer ranked probes, hand-offs or a narrower hit rule cost rays and save
+// nothing that could be measured. A bounce costs the bake alone.
 constexpr QualityLevel kLevels[] = {
-    {"draft", 128, 1, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},      {"low", 192, 2, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},
-    {"medium", 256, 2, {}, 1, 8, true, 1.0f, 1.0f, 1.0f},     {"high", 416, 4, {}, 2, 16, true, 1.0f, 1.0f, 1.0f},
+    {"draft", 128, 1, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},      {"low", 128, 2, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},
+    {"medium", 256, 2, {}, 1, 8, true, 1.0f, 1.0f, 1.0f},     {"high", 416, 4, {}, 2, 32, true, 1.0f, 1.0f, 1.0f},
     {"reference", 512, 8, {}, 8, 32, true, 1.0f, 1.0f, 1.0f},
 };
 

@@ -123,6 +123,20 @@ TEST(Analysis, EqualProbesTimeAndMemory)
     EXPECT_NEAR(memory["ratio"]["wrong_rays"].get<double>(), 0.125, 1e-12);
 }
 
+// Fewer rays or no filter make any tracer's frame cheaper: they decide no table between tracers.
+TEST(Analysis, KnobsOfTheFrameAloneDecideNoTableAgainstTracers)
+{
+    std::vector<Json> points = scene();
+    points.push_back(point("ours", "denoise", "off", {.glossy = 0.001, .frame = 1, .wrong = 0.01, .bytes = 1, .probes = 1}));
+    points.push_back(point("path tracer", "default", "", {.glossy = 0.5, .frame = 3, .wrong = 0, .bytes = 0, .probes = 0}));
+    points.back().erase("rays");
+    points.back().erase("bytes");
+    points.back().erase("probes");
+    const Json analysis = analyseScene(points);
+    EXPECT_EQ(rowOf(analysis, "error", "glossy.relmse", "b0plus/default", "frame_ms")["ours"], "ours/probes=4");
+    EXPECT_EQ(rowOf(analysis, "error", "glossy.relmse", "path tracer/default", "frame_ms")["ours"], "ours/denoise=off");
+}
+
 TEST(Analysis, HalvingTheErrorCostsWhatTheStepSays)
 {
     EXPECT_DOUBLE_EQ(*halvingCost(0.5, 3.0), 3.0);
