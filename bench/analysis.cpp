@@ -427,7 +427,7 @@ std::vector<std::string> answersOf(const Json& results)
             if (!worst) continue;
             scenes += scenes.empty() ? " " : "; ";
             if (unreached)
-                scenes += "in " + scene["name"].get<std::string>() + " it doesn't get there (" +
+                scenes += "out of reach in " + scene["name"].get<std::string>() + " (against " +
                           methodName((*worst)["method"].get<std::string>()) + ")";
             else
                 scenes += times((*worst)["ratio"][question.ratio]) + " as much in " + scene["name"].get<std::string>() + " (against " +

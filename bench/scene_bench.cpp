@@ -26,6 +26,7 @@ namespace
 {
 
 constexpr uint32_t kTimerScopes = 32;
+constexpr uint32_t kTemporalFrames = 16; // of a still camera, before a picture that is filtered over time is judged
 constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
 constexpr double kWrongRelMse = 1.0; // of beauty: as far from the truth as a black picture
 constexpr uint64_t kPathSeed = 1000; // the path tracer's paths are not the reference's
@@ -367,7 +368,9 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     auto score = live.tracer->score(*rays);
     if (!score) return score.error();
     json["rays"] = raysJson(*score);
-    auto frame = live.renderer->render(camera);
+    Result<RenderedFrame> frame = live.renderer->render(camera);
+    const uint32_t frames = point.settings.frame.effects.temporal ? kTemporalFrames : 1;
+    for (uint32_t i = 1; i < frames && frame; ++i) frame = live.renderer->render(camera, i);
     if (!frame) return frame.error();
     auto errors = errorsOf(lightLayers(*frame));
     if (!errors) return errors.error();

@@ -11,7 +11,7 @@ namespace
 // nothing that could be measured. A bounce costs the bake alone.
 constexpr QualityLevel kLevels[] = {
     {"draft", 128, 1, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},      {"low", 128, 2, {}, 1, 2, true, 1.0f, 1.0f, 1.0f},
-    {"medium", 256, 2, {}, 1, 8, true, 1.0f, 1.0f, 1.0f},     {"high", 416, 4, {}, 2, 32, true, 1.0f, 1.0f, 1.0f},
+    {"medium", 256, 4, {}, 1, 8, true, 1.0f, 1.0f, 1.0f},     {"high", 416, 4, {}, 2, 32, true, 1.0f, 1.0f, 1.0f},
     {"reference", 512, 8, {}, 8, 32, true, 1.0f, 1.0f, 1.0f},
 };
 
