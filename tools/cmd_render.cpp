@@ -12,6 +12,7 @@
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
 #include "tools/pictures.h"
+#include "tools/quality_option.h"
 
 namespace sconce::tools
 {
@@ -28,6 +29,7 @@ struct RenderOptions
     CameraOptions camera;
     PictureOptions pictures;
     std::string field, effects = "auto", tracer = "ours", device;
+    QualityOption quality;
     uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
     std::optional<float> roughness;
     float raysBelow = gpu::kRaysBelow;
@@ -130,15 +132,24 @@ int runRender(const RenderOptions& options, const Context& context)
     if (!gpu) return fail(gpu.error());
     Result<DeviceScene> deviceScene = DeviceScene::create(**gpu, *scene, data->info, {}, consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
-    Result<LightField> field = LightField::create(**gpu, *data);
+    const Result<std::optional<PointSettings>> quality = options.quality.load();
+    if (!quality) return fail(quality.error());
+    Result<LightField> field = LightField::create(**gpu, *data, *quality ? (*quality)->quality : Quality());
     if (!field) return fail(field.error());
     RenderSettings settings;
     settings.width = options.width;
     settings.height = options.height;
     settings.glossyRays = options.samples;
     settings.areaSamples *= options.samples;
+    bool denoise = !options.noDenoise;
+    if (*quality)
+    {
+        options.quality.take("--samples", settings.glossyRays, (*quality)->frame.glossyRays);
+        options.quality.take("--samples", settings.areaSamples, (*quality)->frame.areaSamples);
+        options.quality.take("--no-denoise", denoise, (*quality)->frame.effects.denoise);
+    }
     settings.effects = plan->indirect();
-    settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
+    settings.effects.denoise = settings.effects.denoise && denoise;
     settings.areaLights = plan->on("emitters") || plan->on("sky");
     settings.raysBelow = options.raysBelow;
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
@@ -183,12 +194,12 @@ int runRender(const RenderOptions& options, const Context& context)
     for (const PlannedEffect& effect : plan->effects) json["effects"][effect.name] = effect.on;
     json["effects"]["denoise"] = settings.effects.denoise;
     json["device_bytes"] = (*renderer)->deviceBytes();
-    json["samples"] = options.samples;
+    json["samples"] = settings.glossyRays;
     json["frames"] = options.frames;
     json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
-    if (settings.effects.glossy || settings.effects.mirror) addCounts(json, *frame, options.samples);
+    if (settings.effects.glossy || settings.effects.mirror) addCounts(json, *frame, settings.glossyRays);
     if (Status status = options.pictures.write(imagesOf(*frame), json); !status) return fail(status.error());
     addCost(json, watch);
     if (context.json)
@@ -246,6 +257,7 @@ void addRenderCommand(CLI::App& app, Context& context)
     command->add_option("--seed", options->seed, "Of the glossy rays (default: 1; range: 0 to 2^32-1)")->type_name("N");
     addDevice(command, options->device);
     options->pictures.add(command, kFrameLayers);
+    options->quality.add(command);
     onChosen(command, context, options, runRender);
 }
 

@@ -74,9 +74,7 @@ void addTuneCommand(CLI::App& app, Context& context)
         ->check(unlisted(CLI::IsMember({"wrong_rays", "beauty.mse", "beauty.relmse", "beauty.flip", "diffuse.mse", "diffuse.relmse",
                                         "diffuse.flip", "glossy.mse", "glossy.relmse", "glossy.flip"})))
         ->type_name("NAME");
-    command
-        ->add_option("-o,--output", options->output,
-                     "File to write, for --quality of place, bake, render and trace (default: settings.json)")
+    command->add_option("-o,--output", options->output, "File to write, for --quality of place, bake and render (default: settings.json)")
         ->type_name("FILE");
     onChosen(command, context, options, runTune);
 }

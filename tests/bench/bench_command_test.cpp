@@ -141,3 +141,27 @@ TEST(BenchCommand, WhatIsWrongIsASentence)
     const CommandResult place = sconceCommand({"bench", "cornell", "-o", (folder / "file") + "/sub"});
     EXPECT_EQ(place.exit, 5) << place.err;
 }
+
+TEST(QualityOption, SetsWhatTheCommandLineDoesNotSay)
+{
+    const TestFolder folder;
+    const std::string probes = folder / "p.json", field = folder / "f.sconce";
+    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", probes, "--count", "1"}).exit, 0);
+    const CommandResult bake =
+        sconceCommand({"bake", "cornell", "--probes", probes, "-o", field, "--quality", "draft", "--bounces", "0", "--json"});
+    ASSERT_EQ(bake.exit, 0) << bake.err;
+    const json baked = json::parse(bake.out);
+    EXPECT_EQ(baked["resolution"], 128); // the level's
+    EXPECT_EQ(baked["bounces"], 0);      // the line's
+    const auto samples = [&](std::vector<std::string> options)
+    {
+        options.insert(options.begin(), {"render", "cornell", "--field", field, "--size", "32x18", "-o", folder / "x.exr", "--json"});
+        const CommandResult render = sconceCommand(options);
+        EXPECT_EQ(render.exit, 0) << render.err;
+        return json::parse(render.out)["samples"].get<int>();
+    };
+    EXPECT_EQ(samples({}), 1);
+    EXPECT_EQ(samples({"--quality", "high"}), 2);
+    EXPECT_EQ(samples({"--quality", "high", "--samples", "1"}), 1);
+    EXPECT_EQ(sconceCommand({"place", "cornell", "-o", probes, "--quality", "splendid"}).exit, 2);
+}
