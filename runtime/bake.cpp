@@ -3,6 +3,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "runtime/field_space.h"
 #include "runtime/octree_builder.h"
@@ -39,7 +40,9 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     if ((!even && !std::has_single_bit(settings.resolution)) || settings.resolution < 16 || settings.resolution > 2048)
         return "resolution is " + std::to_string(settings.resolution) +
                "; give a power of two in [16, 2048], or a multiple of 32 for the cube chart";
-    if (settings.bounces > 8) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 8]";
+    if (settings.bounces > 64) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 64]";
+    if (!(settings.converged >= 0.0f && settings.converged <= 1.0f))
+        return "converged is " + std::to_string(settings.converged) + "; give a value in [0, 1]";
     if (probes.empty() || probes.size() > 65535) return "there are " + std::to_string(probes.size()) + " probes; give between 1 and 65,535";
     for (size_t i = 0; i < probes.size(); ++i)
         if (!std::isfinite(probes[i].x + probes[i].y + probes[i].z))
@@ -80,6 +83,35 @@ void setChart(gpu::LightFieldInfo& info, uint32_t chart, uint32_t size)
     info.faceSize = size;
     info.topLevel = chart == gpu::kChartCube ? coarsestLevel(size) : 0;
     info.wordsPerProbe = distanceWordsPerProbe(chart, size);
+}
+
+/// Mean radiance over all probes and directions, luminance (Rec. 709 weights).
+double meanRadiance(const FieldData& field)
+{
+    const uint32_t n = field.info.faceSize, faces = field.info.chart == gpu::kChartCube ? 6 : 1;
+    std::vector<double> solidAngle(size_t(n) * n), sums(field.probes.size());
+    twin::LightFieldTwin<float> chart(field, {});
+    double all = 0.0;
+    for (uint32_t i = 0; i < n * n; ++i)
+    {
+        const glm::vec2 uv = (glm::vec2(i % n, i / n) + 0.5f) / float(n);
+        const glm::vec3 d = faces == 6 ? glm::normalize(glm::vec3(2.0f * uv - 1.0f, 1.0f)) : chart.directionFromOctahedral(uv);
+        const double off = faces == 6 ? d.z : std::abs(d.x) + std::abs(d.y) + std::abs(d.z); // 1 / distance of the chart's point
+        solidAngle[i] = off * off * off;
+        all += solidAngle[i] * faces;
+    }
+    parallelFor(field.probes.size(),
+                [&](size_t probe)
+                {
+                    twin::LightFieldTwin<float> text(field, {});
+                    const size_t first = probe * faces * n * n;
+                    for (size_t i = 0; i < size_t(faces) * n * n; ++i)
+                    {
+                        const glm::vec3 light = text.unpackRadiance(field.radiance[first + i]);
+                        sums[probe] += solidAngle[i % (size_t(n) * n)] * glm::dot(light, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+                    }
+                });
+    return std::accumulate(sums.begin(), sums.end(), 0.0) / (all * double(field.probes.size()));
 }
 
 /// A bake in progress: the field and what the bounces need besides.
@@ -193,7 +225,6 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         info.gridStep = settings.grid->step / info.scale;
     }
     bake.field.resolution = settings.resolution;
-    bake.field.bounces = settings.bounces;
     bake.field.sceneName = scene.name;
     bake.field.effects = settings.effects;
     bake.field.probes.resize(probes.size());
@@ -227,8 +258,17 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
         spent.octreeSeconds = watch.lap();
         if (settings.bounces > 0) bake.direct = bake.field.radiance;
+        double energy = meanRadiance(bake.field);
+        spent.energy.push_back(energy);
         for (uint32_t b = 1; b <= settings.bounces; ++b)
+        {
             if (auto status = bake.bounce(**gpu, **baker, b); !status) return status.error();
+            const double with = meanRadiance(bake.field);
+            spent.energy.push_back(with - energy);
+            bake.field.bounces = b;
+            energy = with;
+            if (spent.energy.back() < double(settings.converged) * with) break;
+        }
         spent.bounceSeconds = watch.lap();
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};

@@ -17,7 +17,8 @@ struct BakeSettings
 {
     uint32_t resolution = 512;        // texels a side of an octahedral map, power of two, 16..2048; cube faces have half of it
     uint32_t chart = gpu::kChartCube; // or kChartOctahedral, which the grid baselines need
-    uint32_t bounces = 2;             // times the baked light is re-injected, 0..8; each costs one gather a texel
+    uint32_t bounces = 2;             // times the baked light is re-injected at most, 0..64; each costs one gather a texel
+    float converged = 0.0f;           // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
     DeviceSceneDesc scene;            // textures and lights
     std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
     bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
@@ -36,6 +37,9 @@ struct BakeReport
     double bounceSeconds = 0.0;
     double prefilterSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;
+    /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
+    /// and then what each bounce adds.
+    std::vector<double> energy;
     uint32_t lights = 0; // delta lights, emitter samples and sky directions
 };
 

@@ -47,5 +47,6 @@ void main()
     int reads = 0;
     // The leaf is asked half a voxel off the surface, on the side that the probe sees.
     vec3 gathered = irradianceAt(p, normal, p + 0.5 * field.voxel * normal, reads);
-    radiance.word[index] = packRadiance(unpackRadiance(own) + albedo * gathered);
+    // Rounded to nearest, the last bounces would all be rounded away, in every texel alike.
+    radiance.word[index] = packRadianceDithered(unpackRadiance(own) + albedo * gathered, ditherOf(index));
 }

@@ -42,6 +42,6 @@ void main()
 #ifdef MOMENTS
     irradiance.word[index + 1u] = realToHalf(sum.x) | (realToHalf(max(sum.y - sum.x * sum.x, 0.0)) << 16);
 #else
-    irradiance.word[index] = packRadiance(sum);
+    irradiance.word[index] = packRadianceDithered(sum, ditherOf(at.y * kIrradianceSize + at.x)); // as in bake_bounce.comp
 #endif
 }

@@ -30,8 +30,8 @@ void main()
     Pixel p = readPixel(at);
     if (isNotOf(kTerm, termsOf(p))) return;
     vec4 own = imageLoad(noisy, at);
-    float reach = kReach;
-    if (followRoughness != 0) reach *= clamp(2.5 * p.brdf.roughness - 0.05, 0.0, 1.0) * inversesqrt(float(frame.glossyRays)); // as the noise falls
+    float reach = kReach * inversesqrt(float(frame.glossyRays)); // as the noise falls
+    if (followRoughness != 0) reach *= clamp(2.5 * p.brdf.roughness - 0.05, 0.0, 1.0);
     if (kBlended) reach = max(reach * inversesqrt(max(own.a, 1.0)), min(reach, 2.0));
     if (!p.surface || reach < float(stride))
     {

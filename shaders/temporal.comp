@@ -78,9 +78,12 @@ void main()
         if (clip.w > 0.0)
             past = history((0.5 * clip.xy / clip.w + 0.5) * vec2(frame.size), distance(p.position, frame.eyeBefore), p.normal);
     }
-    vec3 mean, deviation;
-    neighbourhood(at, mean, deviation);
-    past.rgb = clamp(past.rgb, mean - 2.0 * deviation, mean + 2.0 * deviation);
+    if (sharp) // where reflections go is a guess. Elsewhere a clamp would only cut off what few rays of many find: the light itself is still
+    {
+        vec3 mean, deviation;
+        neighbourhood(at, mean, deviation);
+        past.rgb = clamp(past.rgb, mean - 3.0 * deviation, mean + 3.0 * deviation);
+    }
     float frames = min(past.a + 1.0, sharp ? kLongestGlossy : kLongest);
     vec3 blended = mix(past.rgb, own.rgb, 1.0 / frames);
     imageStore(after, at, vec4(blended, frames));

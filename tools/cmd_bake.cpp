@@ -61,6 +61,7 @@ int runBake(const BakeOptions& options, const Context& context)
         Json json = fieldJson(*field);
         json["device"] = device->name();
         json["lights"] = report.lights;
+        json["energy"] = report.energy;
         json["peak_device_bytes"] = report.peakDeviceBytes;
         json["stage_seconds"] = {{"scene", report.sceneSeconds},
                                  {"probes", report.probeSeconds},
@@ -74,6 +75,9 @@ int runBake(const BakeOptions& options, const Context& context)
     else
     {
         printField(*field, options.output);
+        std::cout << "light at the probes, W/(m^2 sr): direct " << report.energy.front();
+        for (size_t b = 1; b < report.energy.size(); ++b) std::cout << ", bounce " << b << " adds " << report.energy[b];
+        std::cout << "\n";
         std::cout << watch.seconds() << " s, " << peakRssMb() << " MB of host memory, on " << device->name() << std::endl;
     }
     return exitOk;
@@ -96,9 +100,13 @@ void addBakeCommand(CLI::App& app, Context& context)
         ->check(unlisted(CLI::Range(64u, 2048u)))
         ->type_name("TEXELS");
     bake->add_option("--bounces", settings.bounces,
-                     "Times the baked light is re-injected; each costs one more pass over every probe (default: 2; range: 0 to 8)")
-        ->check(unlisted(CLI::Range(0u, 8u)))
+                     "Times the baked light is re-injected; each costs one more pass over every probe (default: 2; range: 0 to 64)")
+        ->check(unlisted(CLI::Range(0u, 64u)))
         ->type_name("N");
+    bake->add_option("--converged", settings.converged,
+                     "Stops before --bounces when one adds less than this share of all light (default: 0, never; range: 0 to 1)")
+        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
+        ->type_name("SHARE");
     const std::map<std::string, uint32_t> charts{{"cube", gpu::kChartCube}, {"octahedral", gpu::kChartOctahedral}};
     bake->add_option("--chart", settings.chart,
                      "cube: six faces a probe; octahedral: one map a probe, for the tracers b0, b0plus and b0plus-octree (default: cube)")

@@ -33,7 +33,7 @@ struct RenderOptions
     uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
     std::optional<float> roughness;
     float raysBelow = gpu::kRaysBelow;
-    bool noDenoise = false;
+    bool noDenoise = false, temporal = false;
 };
 
 /// The plan for the scene as it is drawn: with --roughness every surface has that.
@@ -150,6 +150,7 @@ int runRender(const RenderOptions& options, const Context& context)
     }
     settings.effects = plan->indirect();
     settings.effects.denoise = settings.effects.denoise && denoise;
+    settings.effects.temporal = options.temporal;
     settings.areaLights = plan->on("emitters") || plan->on("sky");
     settings.raysBelow = options.raysBelow;
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
@@ -174,7 +175,7 @@ int runRender(const RenderOptions& options, const Context& context)
     for (uint32_t i = 0; i < options.frames; ++i)
     {
         if (!progress("render", double(i) / options.frames)) return fail(ErrorCode::cancelled, "Interrupted; nothing was written.");
-        frame = (*renderer)->render(*camera);
+        frame = (*renderer)->render(*camera, options.temporal ? i : 0);
         if (!frame) return fail(frame.error());
         double sum = 0.0;
         for (const GpuTimer::Scope& scope : frame->times)
@@ -246,6 +247,8 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->check(unlisted(CLI::Range(1u, 64u)))
         ->type_name("N");
     command->add_flag("--no-denoise", options->noDenoise, "Leaves the glossy term unfiltered (default: filtered)");
+    command->add_flag("--temporal", options->temporal,
+                      "Filters over time, too: each of --frames N takes new random rays and blends with the one before (default: off)");
     command->add_option("--roughness", options->roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
         ->check(unlisted(CLI::Range(0.0f, 1.0f)))
         ->type_name("R");

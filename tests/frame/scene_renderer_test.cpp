@@ -81,7 +81,8 @@ TEST_F(SceneRendererTest, CornellMatchesThePathTracer)
     ASSERT_TRUE(frame) << frame.error().message;
     const ImageSet truth = truthOf(scene, 512);
     EXPECT_LT(relativeDifference(floats(frame->direct), truth.find("direct")->pixels), 0.01) << "the lamp itself";
-    EXPECT_NEAR(mean(floats(frame->diffuseIndirect)) / mean(truth.find("diffuse_indirect")->pixels), 1.0, 0.1);
+    EXPECT_NEAR(mean(floats(frame->diffuseIndirect)) / mean(truth.find("diffuse_indirect")->pixels), 1.0, 0.12)
+        << "what glossy surfaces throw on others is baked as if they were diffuse";
     EXPECT_LT(relativeDifference(floats(frame->diffuseIndirect), truth.find("diffuse_indirect")->pixels), 0.3);
     EXPECT_NEAR(mean(floats(frame->glossyIndirect)) / mean(truth.find("glossy_indirect")->pixels), 1.0, 0.15);
     EXPECT_LT(relativeDifference(floats(frame->glossyIndirect), truth.find("glossy_indirect")->pixels), 0.4);

@@ -2,6 +2,8 @@
 #include <cstring>
 #include <numbers>
 
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "runtime/bake.h"
@@ -312,6 +314,27 @@ TEST_F(Bake, FurnaceConvergesGeometrically)
                          weights += 1.0f / (l * l * l);
                      });
         EXPECT_NEAR(mean / weights, 1.0 + 0.5 + 0.25 + 0.125 + 0.0625, 0.06) << "resolution " << resolution;
+    }
+}
+
+// The bounces of that box are e a^(b+1) each, and all light is e / (1 - a).
+TEST_F(Bake, ReportsTheEnergyOfEachBounceUntilItConverges)
+{
+    for (const float reflects : {0.3f, 0.7f})
+    {
+        Scene scene = emptyScene();
+        scene.materials[0].baseColor = vec4(vec3((reflects - 0.04f) / 0.96f), 1.0f);
+        scene.materials[0].emission = vec3(1.0f);
+        addBox(scene, vec3(-1.0f), vec3(1.0f));
+        BakeSettings settings = settingsFor(32, 40);
+        settings.scene.light.emitterSamples = 320;
+        settings.converged = 2e-3f;
+        const FieldData field = bake(scene, {vec3(0.0f)}, settings);
+        ASSERT_EQ(cost.energy.size(), size_t(field.bounces) + 1);
+        EXPECT_LT(field.bounces, 25u) << "it stops when a bounce adds next to nothing";
+        for (size_t b = 2; b < 5; ++b) EXPECT_NEAR(cost.energy[b] / cost.energy[b - 1], reflects, 0.06 * reflects) << "bounce " << b;
+        const double sum = std::accumulate(cost.energy.begin(), cost.energy.end(), 0.0);
+        EXPECT_NEAR(sum, 1.0 / (1.0 - reflects), 0.02 / (1.0 - reflects)) << "reflects " << reflects;
     }
 }
 
