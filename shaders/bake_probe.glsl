@@ -37,8 +37,10 @@ vec3 unpackAlbedo(uint bits)
     return vec3(float(bits & 31u) / 31.0, float((bits >> 5) & 63u) / 63.0, float((bits >> 11) & 31u) / 31.0);
 }
 
-uint packAlbedo(vec3 a)
+/// @param up  [0,1): what is added to a channel's step before the rest is cut off; one of its own for each texel keeps the mean true, on
+///            which the sum of all bounces hangs
+uint packAlbedo(vec3 a, float up)
 {
-    vec3 c = clamp(a, 0.0, 1.0);
-    return uint(c.x * 31.0 + 0.5) | (uint(c.y * 63.0 + 0.5) << 5) | (uint(c.z * 31.0 + 0.5) << 11);
+    uvec3 c = min(uvec3(clamp(a, 0.0, 1.0) * vec3(31.0, 63.0, 31.0) + up), uvec3(31u, 63u, 31u));
+    return c.x | (c.y << 5) | (c.z << 11);
 }

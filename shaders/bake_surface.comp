@@ -49,5 +49,5 @@ void main()
     vec3 irradiance = directLight(p, shading, geometric, 0u, lightCount);
     radiance.word[index] = packRadiance(emission + albedo * irradiance / SCONCE_BRDF_PI);
     if (!isNull(emitted)) emitted.word[index] = seen.w;
-    surface.word[index] = max(packAlbedo(albedo) | (packNormal8(shading) << 16), 1u); // 0 is the sky's
+    surface.word[index] = max(packAlbedo(albedo, ditherOf(index)) | (packNormal8(shading) << 16), 1u); // 0 is the sky's
 }

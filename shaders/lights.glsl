@@ -38,23 +38,25 @@ LightSample unshadowedLight(uint i, vec3 p)
 }
 
 /// Share of the light of entry i that reaches a point. The receiver is moved along its normal by as much as its plane rises over the
-/// filter's footprint (Holbert 2011, "Saying Goodbye to Shadow Acne": normal offset grows with the sine of the angle).
+/// filter's footprint (Holbert 2011, "Saying Goodbye to Shadow Acne": normal offset grows with the sine of the angle): the angle to the
+/// map's axis, for it is along the map's plane that the footprint lies.
 float lightVisibility(uint i, vec3 p, vec3 geometricNormal, vec3 toLight)
 {
     GpuLight light = lights[i];
-    float c = dot(geometricNormal, toLight);
-    float s = sqrt(max(0.0, 1.0 - c * c));
     if (light.type == kLightDirectional || light.type == kLightSky)
     {
+        float c = dot(geometricNormal, toLight);
+        float s = sqrt(max(0.0, 1.0 - c * c));
         vec4 q = vec4(p + (1.5 * s + 0.1) * light.shadowTexel * geometricNormal, 1.0);
         vec3 at = vec3(dot(light.shadowX, q), dot(light.shadowY, q), dot(light.shadowDepth, q));
         if (light.type == kLightSky) return texture(sconceSkyShadows, vec4(at.xy, float(light.shadowLayer), at.z + 5e-5)); // D16
         return texture(sconceSunShadows, vec4(at.xy, float(light.shadowLayer), at.z + 1e-6));
     }
     vec3 from = p - light.position;
-    vec3 w = abs(from);
-    from += (1.5 * s + 0.1) * light.shadowTexel * max(w.x, max(w.y, w.z)) * geometricNormal;
     int face = dominantFace(from);
+    float along = faceCoordinates(face, geometricNormal).z;
+    from += (1.5 * sqrt(max(0.0, 1.0 - along * along)) + 0.1) * light.shadowTexel * faceCoordinates(face, from).z * geometricNormal;
+    face = dominantFace(from);
     vec3 uvw = faceCoordinates(face, from);
     if (uvw.z <= lightsHeader.pointNear) return 1.0; // nothing is nearer than the maps' near plane
     vec2 at = 0.5 * uvw.xy / uvw.z + 0.5;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bake.h"
+#include "scene/mesh_builder.h"
 #include "runtime/tracer_cpu.h"
 #include "tests/support/chain_bounds.h"
 #include "tests/support/device.h"
@@ -317,24 +318,29 @@ TEST_F(Bake, FurnaceConvergesGeometrically)
     }
 }
 
-// The bounces of that box are e a^(b+1) each, and all light is e / (1 - a).
+// An integrating sphere with a light of intensity I in its middle: every point of it has irradiance I / r^2 from the light and reflects it
+// evenly to all others, so each bounce adds its albedo's share of the one before, and all light is the first over 1 - albedo.
 TEST_F(Bake, ReportsTheEnergyOfEachBounceUntilItConverges)
 {
-    for (const float reflects : {0.3f, 0.7f})
+    for (const float reflects : {0.3f, 0.5f, 0.8f})
     {
-        Scene scene = emptyScene();
-        scene.materials[0].baseColor = vec4(vec3((reflects - 0.04f) / 0.96f), 1.0f);
-        scene.materials[0].emission = vec3(1.0f);
-        addBox(scene, vec3(-1.0f), vec3(1.0f));
-        BakeSettings settings = settingsFor(32, 40);
-        settings.scene.light.emitterSamples = 320;
-        settings.converged = 2e-3f;
-        const FieldData field = bake(scene, {vec3(0.0f)}, settings);
+        Scene scene;
+        MeshBuilder mesh(scene);
+        mesh.sphere(vec3(0.0f), 2.0f, 64, 32, mesh.material("white", vec3((reflects - 0.04f) / 0.96f)));
+        Light light;
+        light.type = LightType::point;
+        light.intensity = vec3(8.0f);
+        scene.lights.push_back(light);
+        BakeSettings settings = settingsFor(64, 60);
+        settings.converged = 1e-3f;
+        const FieldData field = bake(scene, {vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)}, settings);
         ASSERT_EQ(cost.energy.size(), size_t(field.bounces) + 1);
-        EXPECT_LT(field.bounces, 25u) << "it stops when a bounce adds next to nothing";
-        for (size_t b = 2; b < 5; ++b) EXPECT_NEAR(cost.energy[b] / cost.energy[b - 1], reflects, 0.06 * reflects) << "bounce " << b;
+        EXPECT_LT(field.bounces, 40u) << "it stops when a bounce adds next to nothing";
+        const double first = reflects * 8.0 / (4.0 * std::numbers::pi);
+        EXPECT_NEAR(cost.energy[0], first, 0.02 * first);
+        for (size_t b = 1; b < 4; ++b) EXPECT_NEAR(cost.energy[b] / cost.energy[b - 1], reflects, 0.03 * reflects) << "bounce " << b;
         const double sum = std::accumulate(cost.energy.begin(), cost.energy.end(), 0.0);
-        EXPECT_NEAR(sum, 1.0 / (1.0 - reflects), 0.02 / (1.0 - reflects)) << "reflects " << reflects;
+        EXPECT_NEAR(sum, first / (1.0 - reflects), 0.02 * first / (1.0 - reflects)) << "reflects " << reflects;
     }
 }
 
@@ -484,7 +490,7 @@ TEST_F(Bake, BadSettingsAreNamed)
     };
     EXPECT_NE(refusal({}, settingsFor(64)).find("0 probes"), std::string::npos);
     EXPECT_NE(refusal({vec3(0.0f)}, settingsFor(100)).find("resolution is 100"), std::string::npos);
-    EXPECT_NE(refusal({vec3(0.0f)}, settingsFor(64, 9)).find("bounces is 9"), std::string::npos);
+    EXPECT_NE(refusal({vec3(0.0f)}, settingsFor(64, 65)).find("bounces is 65"), std::string::npos);
     EXPECT_NE(refusal({vec3(0.0f), vec3(NAN)}, settingsFor(64)).find("probe 1"), std::string::npos);
 }
 
