@@ -22,7 +22,8 @@ constexpr float kSharpness = 70.0f;
 class Views
 {
 public:
-    Views(const Visibility& visibility, const ViewTargets& targets, std::span<const vec3> positions) : wide(targets.size())
+    Views(const Visibility& visibility, const ViewTargets& targets, std::span<const vec3> positions)
+        : wide(targets.size()), weights(targets.weights)
     {
         rows.assign(positions.size(), std::vector<uint8_t>(wide));
         tbb::parallel_for(size_t(0), positions.size(), [&](size_t k) { targets.rate(visibility, positions[k], rows[k]); });
@@ -61,9 +62,8 @@ public:
 
     uint64_t fitness() const
     {
-        uint64_t sum = 0;
-        for (uint8_t one : first) sum += one;
-        return sum;
+        const std::vector<uint8_t> nothing(wide, 0);
+        return gainOf(first, nothing.data(), weights);
     }
 
 private:
@@ -74,6 +74,7 @@ private:
     }
 
     size_t wide;
+    SurfelWeights weights;
     std::vector<std::vector<uint8_t>> rows;
     std::vector<uint8_t> first, second;
 };
@@ -90,9 +91,31 @@ void rate(Proposal& proposal, const LegalSpace& legal, const ViewTargets& target
     proposal.gain = 0;
     if (!legal.allows(proposal.position, clearance)) return;
     proposal.row.resize(targets.size());
-    targets.rate(legal.visibility, proposal.position, proposal.row);
-    proposal.gain = gainOf(proposal.row, others.data());
+    targets.rate(legal.visibility, proposal.position, proposal.row, others); // where others see better, nothing is gained
+    proposal.gain = gainOf(proposal.row, others.data(), targets.weights);
 }
+
+/// A surfel that no probe sees, each as likely as what it stands for.
+class Unseen
+{
+public:
+    Unseen(const std::vector<uint8_t>& best, const SurfelWeights& standFor) : weights(standFor)
+    {
+        for (uint32_t s = 0; s < best.size(); ++s)
+            if (best[s] == 0) (s < weights.common ? common : rare).push_back(s);
+    }
+    bool empty() const { return common.empty() && rare.empty(); }
+    uint32_t draw(RandomStream& random) const
+    {
+        const uint64_t ofCommon = uint64_t(common.size()) * weights.commonWeight;
+        const uint64_t pick = random.below(ofCommon + uint64_t(rare.size()) * weights.rareWeight);
+        return pick < ofCommon ? common[pick / weights.commonWeight] : rare[(pick - ofCommon) / weights.rareWeight];
+    }
+
+private:
+    SurfelWeights weights;
+    std::vector<uint32_t> common, rare;
+};
 
 } // namespace
 
@@ -147,7 +170,7 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
             const bool comfortable =
                 settings.comfort > 0.0f && legal.visibility.distance(positions[k], settings.comfort) >= settings.comfort;
             const float clearance = comfortable ? settings.comfort : settings.clearance;
-            const uint64_t present = gainOf(views.row(k), others.data());
+            const uint64_t present = gainOf(views.row(k), others.data(), targets.weights);
             tbb::parallel_for(size_t(0), supports.size(),
                               [&](size_t corner)
                               {
@@ -174,11 +197,48 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
                 accepted = random.uniform() < std::pow(float(proposal->gain) / float(present), kSharpness);
             if (!accepted) continue;
             positions[k] = proposal->position;
+            targets.rate(legal.visibility, positions[k], proposal->row);
             views.replace(k, proposal->row);
         }
         if (const uint64_t fitness = views.fitness(); fitness > bestFitness) bestFitness = fitness, best = positions;
     }
     positions = best;
+    return success();
+}
+
+Status relocatePositions(const LegalSpace& legal, const ViewTargets& targets, std::vector<vec3>& positions,
+                         const RelocateSettings& settings, const Progress& progress)
+{
+    Views views(legal.visibility, targets, positions);
+    std::vector<uint8_t> others;
+    std::vector<Proposal> proposals(settings.tries);
+    for (size_t k = settings.fixed; k < positions.size(); ++k)
+    {
+        if (!report(progress, "relocation", double(k) / double(positions.size())))
+            return Error{ErrorCode::cancelled, "The relocation of probes was cancelled."};
+        views.without(k, others);
+        const Unseen unseen(others, targets.weights);
+        if (unseen.empty()) continue;
+        tbb::parallel_for(
+            size_t(0), proposals.size(),
+            [&](size_t i)
+            {
+                RandomStream random(settings.seed, k * proposals.size() + i);
+                proposals[i].gain = 0;
+                for (int draw = 0; draw < 4; ++draw)
+                    if (drawBefore(legal, targets.surfels[unseen.draw(random)], settings.clearance, random, proposals[i].position))
+                    {
+                        rate(proposals[i], legal, targets, settings.clearance, others);
+                        break;
+                    }
+            });
+        Proposal& best =
+            *std::max_element(proposals.begin(), proposals.end(), [](const Proposal& a, const Proposal& b) { return a.gain < b.gain; });
+        if (best.gain <= gainOf(views.row(k), others.data(), targets.weights)) continue;
+        positions[k] = best.position;
+        targets.rate(legal.visibility, positions[k], best.row);
+        views.replace(k, best.row);
+    }
     return success();
 }
 

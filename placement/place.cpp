@@ -23,6 +23,7 @@ namespace
 constexpr double kRidgeShare = 0.43;
 constexpr double kSpreadShare = 0.32;
 constexpr double kGapShare = 0.25;
+constexpr size_t kDraws = 8;      // samples drawn for each one that is kept
 constexpr double kRayShare = 0.8; // of the surfels where rays hit; the rest evenly by area
 constexpr float kComfort = 0.09f; // of the probes' spacing, metres from surfaces
 constexpr size_t kTableBytes = size_t(400) << 20;
@@ -48,6 +49,7 @@ std::string faultOf(const PlaceSettings& settings)
     if (settings.surfels < 1000 || settings.surfels > 1'000'000)
         return fmt::format("surfels is {}; give 1000 to 1000000.", settings.surfels);
     if (settings.refineRounds > 1000) return fmt::format("refineRounds is {}; give 0 to 1000.", settings.refineRounds);
+    if (settings.relocateRounds > 1000) return fmt::format("relocateRounds is {}; give 0 to 1000.", settings.relocateRounds);
     if (settings.refineSurfels < 1000 || settings.refineSurfels > 1'000'000)
         return fmt::format("refineSurfels is {}; give 1000 to 1000000.", settings.refineSurfels);
     const size_t kept = numberOf(settings.pins, Pin::Kind::keep), added = numberOf(settings.pins, Pin::Kind::add);
@@ -93,38 +95,6 @@ ProbeSet placeGrid(const FreeSpace& space, const PlaceSettings& settings, PlaceR
     return set;
 }
 
-/// Positions before surface points that the others leave unseen: out along a random direction of the point's hemisphere, anywhere up to
-/// what is hit there.
-std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Surfel> gaps, size_t count, float clearance, uint64_t seed)
-{
-    const Visibility& visibility = legal.visibility;
-    if (gaps.empty()) return {};
-    std::vector<Candidate> found;
-    std::vector<vec3> drawn(count);
-    std::vector<uint8_t> allowed(count);
-    for (size_t round = 0; round < 12 && found.size() < count; ++round)
-    {
-        tbb::parallel_for(size_t(0), count,
-                          [&](size_t i)
-                          {
-                              RandomStream random(seed, round * count + i);
-                              const Surfel& gap = gaps[random.below(gaps.size())];
-                              vec3 direction = random.direction();
-                              if (glm::dot(direction, gap.normal) < 0.0f) direction = -direction;
-                              const vec3 start = gap.position + visibility.epsilon() * gap.normal;
-                              RayHit hit;
-                              const float reach = visibility.cast(start, direction, hit) ? hit.t : legal.space.bounds.diagonal();
-                              // Squared: the far part of a cone is free more often, the near part sees more of what hides in a corner.
-                              const float share = random.uniform();
-                              drawn[i] = start + share * share * reach * direction;
-                              allowed[i] = legal.allows(drawn[i], clearance);
-                          });
-        for (size_t i = 0; i < count && found.size() < count; ++i)
-            if (allowed[i]) found.push_back({drawn[i], Candidate::Origin::gap});
-    }
-    return found;
-}
-
 const char* nameOf(Candidate::Origin origin)
 {
     switch (origin)
@@ -159,6 +129,14 @@ std::vector<Surfel> mixedSurfels(const Scene& scene, const Visibility& visibilit
     for (const Surfel& surfel : areaSurfels(scene, visibility, space, size_t(double(count) * (1.0 - kRayShare)), seed))
         surfels.push_back(surfel);
     return surfels;
+}
+
+float shareSeen(std::span<const uint8_t> best, const SurfelWeights& weights)
+{
+    uint64_t seen = 0;
+    for (size_t s = 0; s < best.size(); ++s)
+        if (best[s] != 0) seen += weights.of(s);
+    return float(double(seen) / double(weights.total(best.size())));
 }
 
 /// The probes with what each is good for, those that see most of what the earlier ones don't first.
@@ -241,30 +219,31 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                  "clearance, forbid less, or raise the number of voxels (a cell is {} m).",
                                  scene.name, clearance, space.field.voxel)};
 
-    const double samples = std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0));
-    std::vector<Surfel> surfels = mixedSurfels(scene, visibility, space, size_t(samples), settings.seed);
+    const float spacing = probeSpacing(space, count ? count : kGuessedCount);
+    const size_t budget = size_t(std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0)));
+    std::vector<Surfel> surfels = mixedSurfels(scene, visibility, space, budget / 4, settings.seed);
     if (surfels.empty())
         return Error{ErrorCode::badInput,
                      fmt::format("No ray from the free space of scene '{}' hits a surface; check --inside.", scene.name)};
-
-    const ViewTargets targets(visibility, std::move(surfels), probeSpacing(space, count ? count : kGuessedCount));
+    // A first choice by few samples tells which places few probes see; those decide the second, of many.
     ViewTable table;
-    if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
+    const ViewTargets few(visibility, std::move(surfels), spacing);
+    if (const Status done = extendTable(table, visibility, few, candidates, progress); !done) return done.error();
     std::vector<uint32_t> chosen = chooseGreedily(table, count, settings.coverage, pinned);
-    const std::vector<uint8_t> best = bestValues(table, chosen);
     std::vector<Surfel> gaps;
-    for (size_t s = 0; s < targets.size(); ++s)
-        if (best[s] == 0) gaps.push_back(targets.surfels[s]);
+    const ViewTargets targets =
+        stratifiedTargets(visibility, mixedSurfels(scene, visibility, space, kDraws * budget, settings.seed ^ 0x64726177ull),
+                          positionsOf(candidates, chosen), budget / 2, spacing, gaps);
     for (const Candidate& candidate : gapCandidates(legal, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
         candidates.push_back(candidate);
+    table = {};
     if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
 
     std::vector<uint32_t> all(candidates.size());
     for (uint32_t c = 0; c < all.size(); ++c) all[c] = c;
     const std::vector<uint8_t> bestOfAll = bestValues(table, all);
     report.candidates = candidates.size();
-    report.bestPossible =
-        float(double(targets.size() - size_t(std::count(bestOfAll.begin(), bestOfAll.end(), uint8_t(0)))) / double(targets.size()));
+    report.bestPossible = shareSeen(bestOfAll, targets.weights);
     if (count > candidates.size())
         return Error{ErrorCode::badArgument,
                      fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
@@ -299,11 +278,28 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                                           settings.coverage, chosen.size(), kMostProbes)};
     }
 
-    // Fresh samples: those of the choice have been fitted to already.
-    const ViewTargets refining(visibility,
-                               mixedSurfels(scene, visibility, space, settings.refineSurfels, settings.seed ^ 0x726566696e65ull),
-                               probeSpacing(space, chosen.size()));
     std::vector<vec3> positions = positionsOf(candidates, chosen);
+    std::vector<Candidate::Origin> origins;
+    for (uint32_t candidate : chosen) origins.push_back(candidates[candidate].origin);
+    // Fresh samples each time: those of the choice have been fitted to already.
+    const auto freshTargets = [&](uint64_t seed)
+    {
+        return stratifiedTargets(visibility, mixedSurfels(scene, visibility, space, kDraws * settings.refineSurfels, settings.seed ^ seed),
+                                 positions, settings.refineSurfels / 2, probeSpacing(space, positions.size()), gaps);
+    };
+    for (uint32_t round = 0; round < settings.relocateRounds; ++round)
+    {
+        const std::vector<vec3> before = positions;
+        RelocateSettings relocate;
+        relocate.clearance = clearance;
+        relocate.seed = settings.seed ^ (0x72656c6f63ull + round);
+        relocate.fixed = pinned;
+        if (const Status done = relocatePositions(legal, freshTargets(relocate.seed), positions, relocate, progress); !done)
+            return done.error();
+        for (size_t k = 0; k < positions.size(); ++k)
+            if (positions[k] != before[k]) origins[k] = Candidate::Origin::gap;
+    }
+    const ViewTargets refining = freshTargets(0x726566696e65ull);
     OptimiseSettings optimise;
     optimise.refine = settings.refine;
     optimise.rounds = settings.refineRounds;
@@ -314,7 +310,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     if (const Status done = optimisePositions(legal, refining, positions, optimise, progress); !done) return done.error();
 
     std::vector<Candidate> final;
-    for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], candidates[chosen[k]].origin});
+    for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], origins[k]});
     return explained(visibility, refining, final, report);
 }
 

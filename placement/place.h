@@ -38,9 +38,10 @@ struct PlaceSettings
     uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
     Refine refine = Refine::gradient; // how positions are moved after the choice, grid apart; the others cost more and gain nothing
     uint32_t refineRounds = 6;        // times through all probes, 0..1,000; each costs 8 views a probe, or 9
-    uint32_t refineSurfels = 16000;   // surface samples to refine by, 1,000..1,000,000
-    bool explain = false;             // fills PlaceReport::picture
-    uint32_t surfels = 16000;         // surface samples to choose by, 1,000..1,000,000; cost: 0.1 us times candidates times surfels
+    uint32_t relocateRounds = 3; // times each probe is tried where no other sees, after the choice, 0..1,000; each costs 32 views a probe
+    uint32_t refineSurfels = 32000; // surface samples to relocate and refine by, 1,000..1,000,000; up to half where few probes see
+    bool explain = false;           // fills PlaceReport::picture
+    uint32_t surfels = 32000;       // surface samples to choose by, the same; cost: 0.1 us times candidates times surfels
 };
 
 struct PlaceReport

@@ -16,11 +16,12 @@ void raise(std::vector<uint8_t>& best, std::span<const uint8_t> row)
     for (size_t s = 0; s < row.size(); ++s) best[s] = std::max(best[s], row[s]);
 }
 
-size_t newlySeen(std::span<const uint8_t> row, const std::vector<uint8_t>& best)
+uint64_t newlySeen(std::span<const uint8_t> row, const std::vector<uint8_t>& best, const SurfelWeights& weights)
 {
-    size_t seen = 0;
-    for (size_t s = 0; s < row.size(); ++s) seen += row[s] != 0 && best[s] == 0;
-    return seen;
+    uint64_t common = 0, rare = 0;
+    for (size_t s = 0; s < weights.common; ++s) common += row[s] != 0 && best[s] == 0;
+    for (size_t s = weights.common; s < row.size(); ++s) rare += row[s] != 0 && best[s] == 0;
+    return common * weights.commonWeight + rare * weights.rareWeight;
 }
 
 /// A candidate and an upper bound of its gain: gains only fall as more is chosen (Minoux 1978, lazy evaluation).
@@ -33,62 +34,11 @@ struct Bound
 
 } // namespace
 
-uint64_t gainOf(std::span<const uint8_t> row, const uint8_t* best)
-{
-    uint64_t sum = 0;
-    for (size_t first = 0; first < row.size(); first += 4096) // blocks whose sum fits 32 bits: the inner loop vectorises
-    {
-        const size_t end = std::min(row.size(), first + 4096);
-        uint32_t part = 0;
-        for (size_t s = first; s < end; ++s) part += uint32_t(std::max(row[s], best[s]) - best[s]);
-        sum += part;
-    }
-    return sum;
-}
-
-ViewTargets::ViewTargets(const Visibility& visibility, std::vector<Surfel> samples, float metres)
-    : surfels(std::move(samples)), spacing(metres)
-{
-    Bounds bounds;
-    for (const Surfel& surfel : surfels) bounds.add(surfel.position);
-    const vec3 perCell = 1023.0f / glm::max(bounds.size(), vec3(1e-30f));
-    const auto spread = [](uint32_t bits) // to every third bit
-    {
-        uint32_t out = 0;
-        for (uint32_t bit = 0; bit < 10; ++bit) out |= (bits >> bit & 1u) << (3 * bit);
-        return out;
-    };
-    std::vector<std::pair<uint32_t, uint32_t>> order(surfels.size());
-    for (uint32_t s = 0; s < order.size(); ++s)
-    {
-        const uvec3 cell((surfels[s].position - bounds.low) * perCell);
-        order[s] = {spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, s};
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<Surfel> sorted;
-    for (const auto& [code, s] : order) sorted.push_back(surfels[s]);
-    surfels = std::move(sorted);
-    for (const Surfel& surfel : surfels) lifted.push_back(surfel.position + visibility.epsilon() * surfel.normal);
-}
-
-void ViewTargets::rate(const Visibility& visibility, vec3 probe, std::span<uint8_t> values) const
-{
-    for (size_t s = 0; s < surfels.size(); ++s)
-    {
-        const float quality = viewQuality(surfels[s], probe, spacing);
-        values[s] = quality > 0.0f ? uint8_t(float(kSeen) + std::round(float(kBetter) * quality)) : uint8_t(0);
-    }
-    thread_local std::vector<uint8_t> seen;
-    seen.assign(values.begin(), values.end());
-    visibility.unoccluded(probe, lifted, seen);
-    for (size_t s = 0; s < surfels.size(); ++s)
-        if (!seen[s]) values[s] = 0;
-}
-
 Status extendTable(ViewTable& table, const Visibility& visibility, const ViewTargets& targets, std::span<const Candidate> candidates,
                    const Progress& progress)
 {
     table.surfels = targets.size();
+    table.weights = targets.weights;
     const size_t held = table.candidates();
     table.values.resize(candidates.size() * targets.size());
     constexpr size_t kChunk = 128; // candidates between two reports
@@ -109,33 +59,34 @@ Status extendTable(ViewTable& table, const Visibility& visibility, const ViewTar
 std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float coverage, size_t fixed)
 {
     const size_t wanted = count ? std::min(count, table.candidates()) : table.candidates();
-    const size_t enough = size_t(std::ceil(double(coverage) * double(table.surfels)));
+    const auto enough = uint64_t(std::ceil(double(coverage) * double(table.total())));
     std::vector<uint8_t> best(table.surfels, 0);
     std::vector<uint32_t> chosen;
-    size_t seen = 0, barren = 0; // barren: choices in a row that saw nothing new
+    uint64_t seen = 0;
+    size_t barren = 0; // barren: choices in a row that saw nothing new
     for (uint32_t candidate = 0; candidate < fixed; ++candidate)
     {
-        seen += newlySeen(table.row(candidate), best);
+        seen += newlySeen(table.row(candidate), best, table.weights);
         raise(best, table.row(candidate));
         chosen.push_back(candidate);
     }
     std::vector<Bound> bounds(table.candidates() - fixed);
     tbb::parallel_for(size_t(0), bounds.size(),
                       [&](size_t i) {
-                          bounds[i] = {gainOf(table.row(fixed + i), best.data()), uint32_t(fixed + i)};
+                          bounds[i] = {gainOf(table.row(fixed + i), best.data(), table.weights), uint32_t(fixed + i)};
                       });
     std::priority_queue<Bound> queue(std::less<Bound>(), std::move(bounds));
     while (chosen.size() < wanted && !queue.empty() && (count || (seen < enough && barren < 16)))
     {
         Bound top = queue.top();
         queue.pop();
-        const uint64_t gain = gainOf(table.row(top.candidate), best.data());
+        const uint64_t gain = gainOf(table.row(top.candidate), best.data(), table.weights);
         if (!queue.empty() && Bound{gain, top.candidate} < queue.top())
         {
             queue.push({gain, top.candidate});
             continue;
         }
-        const size_t fresh = newlySeen(table.row(top.candidate), best);
+        const uint64_t fresh = newlySeen(table.row(top.candidate), best, table.weights);
         seen += fresh;
         barren = fresh ? 0 : barren + 1;
         raise(best, table.row(top.candidate));
@@ -175,7 +126,7 @@ void improveByExchange(const ViewTable& table, std::vector<uint32_t>& chosen, in
             }
             std::vector<uint8_t> without = before;
             raise(without, after[k + 1]);
-            tbb::parallel_for(size_t(0), gains.size(), [&](size_t c) { gains[c] = gainOf(table.row(c), without.data()); });
+            tbb::parallel_for(size_t(0), gains.size(), [&](size_t c) { gains[c] = gainOf(table.row(c), without.data(), table.weights); });
             const size_t best = size_t(std::max_element(gains.begin(), gains.end()) - gains.begin());
             if (gains[best] > gains[chosen[k]])
             {
@@ -222,15 +173,16 @@ std::vector<float> orderByGain(const ViewTable& table, std::vector<uint32_t>& ch
     std::vector<float> shares;
     for (size_t k = 0; k < chosen.size(); ++k)
     {
-        size_t pick = k, most = 0;
+        size_t pick = k;
+        uint64_t most = 0;
         for (size_t other = k; other < chosen.size(); ++other)
         {
-            const size_t fresh = newlySeen(table.row(chosen[other]), best);
+            const uint64_t fresh = newlySeen(table.row(chosen[other]), best, table.weights);
             if (fresh > most) most = fresh, pick = other;
         }
         std::rotate(chosen.begin() + ptrdiff_t(k), chosen.begin() + ptrdiff_t(pick), chosen.begin() + ptrdiff_t(pick) + 1);
         raise(best, table.row(chosen[k]));
-        shares.push_back(table.surfels ? float(most) / float(table.surfels) : 0.0f);
+        shares.push_back(table.surfels ? float(double(most) / double(table.total())) : 0.0f);
         if (most == 0) // nothing new from any of the rest: their order stays
         {
             shares.resize(chosen.size(), 0.0f);
@@ -248,9 +200,10 @@ std::vector<float> sharesAlone(const ViewTable& table, std::span<const uint32_t>
     std::vector<float> shares;
     for (uint32_t candidate : chosen)
     {
-        size_t alone = 0;
-        for (size_t s = 0; s < table.surfels; ++s) alone += table.row(candidate)[s] != 0 && seenBy[s] == 1;
-        shares.push_back(table.surfels ? float(alone) / float(table.surfels) : 0.0f);
+        uint64_t alone = 0;
+        for (size_t s = 0; s < table.surfels; ++s)
+            if (table.row(candidate)[s] != 0 && seenBy[s] == 1) alone += table.weights.of(s);
+        shares.push_back(table.surfels ? float(double(alone) / double(table.total())) : 0.0f);
     }
     return shares;
 }

@@ -5,42 +5,22 @@
 #include <vector>
 
 #include "placement/skeleton.h"
-#include "placement/surface_samples.h"
+#include "placement/view_targets.h"
 #include "scene/progress.h"
 #include "scene/result.h"
 
 namespace sconce
 {
 
-/// What a view of a surfel is worth: 0 when it is not seen, else kSeen + kBetter * viewQuality. That a surfel is seen at all is worth as
-/// much as ten steps from the worst view to the best. Whole numbers, so that sums are the same in any order.
-inline constexpr uint8_t kSeen = 232;
-inline constexpr uint8_t kBetter = 23;
-
-/// Surfels laid out for many questions from probes: along a Morton curve, so that rays to neighbours are traced together.
-struct ViewTargets
-{
-    std::vector<Surfel> surfels;
-    std::vector<vec3> lifted; // positions off their surface by Visibility::epsilon()
-    float spacing = 1.0f;     // metres, for viewQuality
-
-    ViewTargets() = default;
-    ViewTargets(const Visibility& visibility, std::vector<Surfel> samples, float spacing);
-    size_t size() const { return surfels.size(); }
-    /// values[s] = what a probe's view of surfel s is worth.
-    void rate(const Visibility& visibility, vec3 probe, std::span<uint8_t> values) const;
-};
-
-/// How much the sum of best values grows with one more row.
-uint64_t gainOf(std::span<const uint8_t> row, const uint8_t* best);
-
 /// The worth of each candidate's view of each surfel.
 struct ViewTable
 {
     size_t surfels = 0;
+    SurfelWeights weights;
     std::vector<uint8_t> values; // [candidates][surfels]
 
     size_t candidates() const { return surfels ? values.size() / surfels : 0; }
+    uint64_t total() const { return weights.total(surfels); }
     std::span<const uint8_t> row(size_t candidate) const { return {values.data() + candidate * surfels, surfels}; }
 };
 

@@ -144,4 +144,37 @@ std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, f
     return found;
 }
 
+bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, RandomStream& random, vec3& position)
+{
+    vec3 direction = random.direction();
+    if (glm::dot(direction, surfel.normal) < 0.0f) direction = -direction;
+    const vec3 start = surfel.position + legal.visibility.epsilon() * surfel.normal;
+    RayHit hit;
+    const float reach = legal.visibility.cast(start, direction, hit) ? hit.t : legal.space.bounds.diagonal();
+    // Squared: the far part of a cone is free more often, the near part sees more of what hides in a corner.
+    const float share = random.uniform();
+    position = start + share * share * reach * direction;
+    return legal.allows(position, clearance);
+}
+
+std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Surfel> gaps, size_t count, float clearance, uint64_t seed)
+{
+    if (gaps.empty()) return {};
+    std::vector<Candidate> found;
+    std::vector<vec3> drawn(count);
+    std::vector<uint8_t> allowed(count);
+    for (size_t round = 0; round < 12 && found.size() < count; ++round)
+    {
+        tbb::parallel_for(size_t(0), count,
+                          [&](size_t i)
+                          {
+                              RandomStream random(seed, round * count + i);
+                              allowed[i] = drawBefore(legal, gaps[random.below(gaps.size())], clearance, random, drawn[i]);
+                          });
+        for (size_t i = 0; i < count && found.size() < count; ++i)
+            if (allowed[i]) found.push_back({drawn[i], Candidate::Origin::gap});
+    }
+    return found;
+}
+
 } // namespace sconce

@@ -1,9 +1,9 @@
 // What a placement is worth beside its yardstick, in one run and on the same samples:
 //   sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX]
-// Rows: yardstick, grid, skeleton (alone), chosen (greedy and exchange), gradient, gibbs, stochastic (chosen and refined so), balls (chosen
-// with the other skeleton), bound (what any legal position at all sees).
-// Each line: coverage of ray hits and of area in per cent, cosine and distance of the best view (medians), seconds. --save writes
-// PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
+// Rows: yardstick, grid, skeleton (alone), chosen (greedy and exchange), relocated (chosen and relocated), gradient, gibbs, stochastic
+// (that and refined so; gradient is what `sconce place` does), balls (chosen with the other skeleton), bound (what any legal position at
+// all sees). Each line: coverage of ray hits and of area in per cent, cosine and distance of the best view (medians), seconds. --save
+// writes PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -103,9 +103,10 @@ struct Table
         return set;
     }
 
-    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method, Refine refine) const
+    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method, Refine refine, bool relocate) const
     {
         PlaceSettings settings;
+        if (!relocate) settings.relocateRounds = 0;
         settings.count = count;
         settings.method = method;
         settings.refine = refine;
@@ -132,7 +133,7 @@ struct Table
     {
         int failures =
             line("yardstick", count, [&] { return Result<ProbeSet>(setOf(test::yardstickProbes(visibility, space, count, 7), "greedy")); });
-        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid, Refine::none); });
+        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid, Refine::none, false); });
         failures += line("skeleton", count,
                          [&]
                          {
@@ -141,11 +142,12 @@ struct Table
                                  positions.push_back(candidate.position);
                              return Result<ProbeSet>(setOf(positions, "skeleton"));
                          });
+        failures += line("chosen", count, [&] { return ours(count, PlaceSettings::Method::sdf, Refine::none, false); });
         const std::pair<const char*, Refine> refinements[] = {
-            {"chosen", Refine::none}, {"gradient", Refine::gradient}, {"gibbs", Refine::gibbs}, {"stochastic", Refine::stochastic}};
+            {"relocated", Refine::none}, {"gradient", Refine::gradient}, {"gibbs", Refine::gibbs}, {"stochastic", Refine::stochastic}};
         for (const auto& [name, refine] : refinements)
-            failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine); });
-        failures += line("balls", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::none); });
+            failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine, true); });
+        failures += line("balls", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::none, false); });
         return failures;
     }
 };
