@@ -41,7 +41,7 @@ struct PlaceSettings
     uint32_t relocateRounds = 3; // times each probe is tried where no other sees, after the choice, 0..1,000; each costs 32 views a probe
     uint32_t refineSurfels = 32000; // surface samples to relocate and refine by, 1,000..1,000,000; up to half where few probes see
     bool explain = false;           // fills PlaceReport::picture
-    uint32_t surfels = 32000;       // surface samples to choose by, the same; cost: 0.1 us times candidates times surfels
+    uint32_t surfels = 48000;       // surface samples to choose by, the same; cost: 0.1 us times candidates times surfels
 };
 
 struct PlaceReport

@@ -12,8 +12,8 @@ namespace sconce
 
 /// What a view of a surfel is worth: 0 when it is not seen, else kSeen to kSeen + kBetter, growing with viewQuality. That a surfel is seen
 /// at all is worth as much as kSeen / kBetter steps from the worst view to the best. Whole numbers, so that sums are the same in any order.
-inline constexpr uint8_t kSeen = 247;
-inline constexpr uint8_t kBetter = 8;
+inline constexpr uint8_t kSeen = 249;
+inline constexpr uint8_t kBetter = 6;
 
 /// How many surfels of the scene one of a set stands for.
 struct SurfelWeights
