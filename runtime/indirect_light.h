@@ -32,7 +32,7 @@ public:
     /// @param timer  optional; scopes "classify tiles", "gather light", "glossy trace", "mirror trace", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
-    // Outputs, RGBA32F; empty when the effect is off. An image holds values where a pixel has the term (shaders/gbuffer_read.glsl, termsOf)
+    // Outputs, RGBA32F; empty when the effect is off. An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf)
     // and anything elsewhere; shaders/compose.comp shows how they make a picture.
     const GpuImage& diffuse() const
     {

@@ -16,22 +16,8 @@ struct Pixel
     BrdfSurface brdf;
 };
 
-/// How much of a surface's reflections traced rays give, [0,1]; prefiltered radiance gives the rest.
-float shareOfRays(float roughness) { return 1.0 - smoothstep(frame.raysBelow - kRaysBlend, frame.raysBelow + kRaysBlend, roughness); }
-
-/// Bit i: the pixel has term i.
-uint termsOf(bool surface, BrdfSurface s)
-{
-    if (!surface) return 0u;
-    uint terms = s.metallic < 1.0 && any(greaterThan(s.baseColor, vec3(0.0))) ? 1u << kTermDiffuse : 0u;
-    if (isMirror(s.roughness)) return terms | (1u << kTermMirror);
-    float rays = shareOfRays(s.roughness);
-    if (rays > 0.0) terms |= 1u << kTermGlossy;
-    if (rays < 1.0) terms |= 1u << kTermRough;
-    return terms;
-}
-
-uint termsOf(Pixel p) { return termsOf(p.surface, p.brdf); }
+float shareOfRays(float roughness) { return shareOfRays(roughness, frame.raysBelow); }
+uint termsOf(Pixel p) { return p.surface ? termsOf(p.brdf, frame.raysBelow) : 0u; }
 
 Pixel readPixel(ivec2 at)
 {

@@ -60,7 +60,7 @@ std::string commandLine(const BenchOptions& options)
 }
 
 /// A device, and what every scene is measured with.
-struct Session
+struct BenchRun
 {
     const BenchOptions& options;
     const Context& context;
@@ -72,12 +72,12 @@ struct Session
 using Publish = std::function<Status(Json scene)>;
 
 /// One scene's points, as results.json has the scene; `publish` gets it whenever something is added.
-Result<Json> benchScene(const Session& session, const std::string& source, PlanSettings plan, const BenchSettings& settings,
+Result<Json> benchScene(const BenchRun& run, const std::string& source, PlanSettings plan, const BenchSettings& settings,
                         const std::filesystem::path& folder, const Publish& publish)
 {
-    SceneOptions chosen = session.options.scene;
+    SceneOptions chosen = run.options.scene;
     chosen.name = source;
-    Result<Scene> scene = chosen.load(session.context);
+    Result<Scene> scene = chosen.load(run.context);
     if (!scene) return scene.error();
     if (plan.probes == 0) plan.probes = defaultProbes(nameOf(source));
     const Result<std::vector<PlannedPoint>> points = planPoints(plan);
@@ -85,9 +85,9 @@ Result<Json> benchScene(const Session& session, const std::string& source, PlanS
     SceneBench::Desc desc;
     desc.name = nameOf(source);
     desc.source = std::filesystem::path(source).filename().string();
-    if (session.options.camera.eye || !session.options.camera.name.empty())
+    if (run.options.camera.eye || !run.options.camera.name.empty())
     {
-        const Result<Camera> camera = session.options.camera.choose(*scene);
+        const Result<Camera> camera = run.options.camera.choose(*scene);
         if (!camera) return camera.error();
         desc.camera = *camera;
     }
@@ -95,7 +95,7 @@ Result<Json> benchScene(const Session& session, const std::string& source, PlanS
     desc.settings = settings;
     desc.folder = folder;
     desc.version = SCONCE_VERSION;
-    auto bench = SceneBench::create(session.gpu, session.device, std::move(desc), points->front().settings, session.progress);
+    auto bench = SceneBench::create(run.gpu, run.device, std::move(desc), points->front().settings, run.progress);
     if (!bench) return bench.error();
     Json described;
     const auto publishPoints = [&](const std::vector<Json>& measured)
@@ -106,17 +106,17 @@ Result<Json> benchScene(const Session& session, const std::string& source, PlanS
         described["analysis"] = analyseScene(scaled);
         return publish(described);
     };
-    const auto say = [&session](const std::string& text) { note(session.context, text); };
-    if (Status status = sweepScene(**bench, *points, publishPoints, say, session.progress); !status) return status.error();
+    const auto say = [&run](const std::string& text) { note(run.context, text); };
+    if (Status status = sweepScene(**bench, *points, publishPoints, say, run.progress); !status) return status.error();
     return described;
 }
 
-int runSweep(const Session& session)
+int runSweep(const BenchRun& run)
 {
     const Stopwatch watch;
-    const std::filesystem::path folder(session.options.output);
-    Json results = resultsHead(SCONCE_VERSION, commandLine(session.options), session.device);
-    for (const std::string& source : session.options.scenes)
+    const std::filesystem::path folder(run.options.output);
+    Json results = resultsHead(SCONCE_VERSION, commandLine(run.options), run.device);
+    for (const std::string& source : run.options.scenes)
     {
         results["scenes"].push_back(Json::object());
         const auto publish = [&](Json scene)
@@ -126,12 +126,12 @@ int runSweep(const Session& session)
             results["seconds"] = watch.seconds();
             return writeResults(results, folder);
         };
-        const Result<Json> scene = benchScene(session, source, session.options.plan, session.options.settings, folder, publish);
+        const Result<Json> scene = benchScene(run, source, run.options.plan, run.options.settings, folder, publish);
         if (!scene) return fail(scene.error());
     }
     if (Status status = writeReportPage(results, folder); !status) return fail(status.error());
-    session.progress("bench", 1.0);
-    if (session.context.json)
+    run.progress("bench", 1.0);
+    if (run.context.json)
     {
         Json json{{"results", (folder / "results.json").string()}, {"report", (folder / "report/index.html").string()}};
         json["scenes"] = results["scenes"].size();
@@ -187,45 +187,45 @@ void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings&
 }
 
 /// The points of a guarded scene, measured anew: ours alone, without pictures.
-Result<std::vector<Json>> guardedPoints(const Session& session, const std::string& source, BenchSettings settings, PlanSettings plan)
+Result<std::vector<Json>> guardedPoints(const BenchRun& run, const std::string& source, BenchSettings settings, PlanSettings plan)
 {
     const Scratch scratch;
     if (scratch.path.empty())
         return Error{ErrorCode::fileError, "No temporary folder can be made; set TMPDIR to one that can be written to."};
     settings.pictures = false;
     plan.methods = {"ours"};
-    const Result<Json> scene = benchScene(session, source, plan, settings, scratch.path, [](const Json&) { return success(); });
+    const Result<Json> scene = benchScene(run, source, plan, settings, scratch.path, [](const Json&) { return success(); });
     if (!scene) return scene.error();
     return (*scene)["points"].get<std::vector<Json>>();
 }
 
-int writeGuard(const Session& session)
+int writeGuard(const BenchRun& run)
 {
     Json guard = emptyGuard();
-    for (const std::string& source : session.options.scenes)
+    for (const std::string& source : run.options.scenes)
     {
-        PlanSettings plan = session.options.plan;
+        PlanSettings plan = run.options.plan;
         if (plan.probes == 0) plan.probes = defaultProbes(nameOf(source));
-        const Result<std::vector<Json>> points = guardedPoints(session, source, session.options.settings, plan);
+        const Result<std::vector<Json>> points = guardedPoints(run, source, run.options.settings, plan);
         if (!points) return fail(points.error());
-        guard["scenes"].push_back(guardedScene(nameOf(source), source, guardOptions(session.options.settings, plan), *points));
+        guard["scenes"].push_back(guardedScene(nameOf(source), source, guardOptions(run.options.settings, plan), *points));
     }
-    if (Status status = writeText(session.options.baseline, guard.dump(1) + "\n"); !status) return fail(status.error());
+    if (Status status = writeText(run.options.baseline, guard.dump(1) + "\n"); !status) return fail(status.error());
     return exitOk;
 }
 
-int checkGuard(const Session& session)
+int checkGuard(const BenchRun& run)
 {
     const Stopwatch watch;
-    const Result<Json> guard = readGuard(session.options.check);
+    const Result<Json> guard = readGuard(run.options.check);
     if (!guard) return fail(guard.error());
     Json json = {{"worse", Json::array()}, {"points", Json::array()}};
     for (const Json& scene : (*guard)["scenes"])
     {
-        BenchSettings settings = session.options.settings;
+        BenchSettings settings = run.options.settings;
         PlanSettings plan;
         setGuardOptions(scene["options"], settings, plan);
-        const Result<std::vector<Json>> points = guardedPoints(session, scene["source"], settings, plan);
+        const Result<std::vector<Json>> points = guardedPoints(run, scene["source"], settings, plan);
         if (!points) return fail(points.error());
         for (const std::string& sentence : worsened(*guard, scene, *points)) json["worse"].push_back(sentence);
         for (const Json& point : *points)
@@ -236,7 +236,7 @@ int checkGuard(const Session& session)
                                       {"wrong_rays", *figureOf(point, "wrong_rays")}});
     }
     addCost(json, watch);
-    if (session.context.json)
+    if (run.context.json)
         print(json);
     else
         for (const Json& point : json["points"])
@@ -252,9 +252,9 @@ int runBench(const BenchOptions& options, const Context& context)
     if (!device) return fail(device.error());
     Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
-    const Session session{options, context, **gpu, device->name(), consoleProgress(context)};
-    if (!options.check.empty()) return checkGuard(session);
-    return options.baseline.empty() ? runSweep(session) : writeGuard(session);
+    const BenchRun run{options, context, **gpu, device->name(), consoleProgress(context)};
+    if (!options.check.empty()) return checkGuard(run);
+    return options.baseline.empty() ? runSweep(run) : writeGuard(run);
 }
 
 } // namespace

@@ -49,6 +49,22 @@ SCONCE_CHECK_SIZE(TileRuns, 16);
 SCONCE_STRUCTS_END
 
 #ifndef __cplusplus
+#include "shared/brdf.h"
+
+/// How much of a surface's reflections traced rays give, [0,1]; prefiltered radiance gives the rest.
+float shareOfRays(float roughness, float raysBelow) { return 1.0 - smoothstep(raysBelow - kRaysBlend, raysBelow + kRaysBlend, roughness); }
+
+/// Bit i: a pixel of this surface has term i, and the images of IndirectLight hold it.
+uint termsOf(BrdfSurface s, float raysBelow)
+{
+    uint terms = s.metallic < 1.0 && any(greaterThan(s.baseColor, vec3(0.0))) ? 1u << kTermDiffuse : 0u;
+    if (isMirror(s.roughness)) return terms | (1u << kTermMirror);
+    float rays = shareOfRays(s.roughness, raysBelow);
+    if (rays > 0.0) terms |= 1u << kTermGlossy;
+    if (rays < 1.0) terms |= 1u << kTermRough;
+    return terms;
+}
+
 uint spreadBits(uint v) // bit i to bit 2 i, of the lower 8
 {
     v = (v | (v << 4u)) & 0x0f0fu;

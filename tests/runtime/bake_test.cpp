@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bake.h"
-#include "scene/mesh_builder.h"
 #include "runtime/tracer_cpu.h"
+#include "scene/mesh_builder.h"
 #include "tests/support/chain_bounds.h"
 #include "tests/support/device.h"
 
