@@ -5,6 +5,7 @@
 
 #include "bench/reference.h"
 #include "scene/builtin_scenes.h"
+#include "scene/mesh_builder.h"
 #include "tests/frame/frame_test.h"
 
 namespace sconce
@@ -132,6 +133,40 @@ TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
     for (const vec3& pixel : diffuseOnly->glossyIndirect) EXPECT_EQ(pixel, vec3(0.0f));
     for (size_t i = 0; i < all->beauty.size(); ++i)
         EXPECT_EQ(diffuseOnly->beauty[i], diffuseOnly->direct[i] + diffuseOnly->diffuseIndirect[i]);
+}
+
+// Objects that move are in the G-buffer and not in the light field: they are lit by it and reflect it.
+TEST_F(SceneRendererTest, ObjectThatTheLightFieldDoesNotKnowIsLitAndReflects)
+{
+    const Scene still = *makeBuiltinScene("cornell");
+    const auto field = bakeField(still, kCornellProbes, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    for (const auto& [roughness, metallic] : {std::pair{1.0f, 0.0f}, {0.2f, 1.0f}})
+    {
+        Scene moved = still;
+        MeshBuilder mesh(moved);
+        const uint32_t material = mesh.material("ball", vec3(0.8f), roughness, metallic);
+        mesh.sphere(vec3(0.0f, 1.3f, -0.3f), 0.2f, 64, 32, material);
+        const auto frame = drawWith(*field, moved, settingsFor());
+        ASSERT_TRUE(frame) << frame.error().message;
+        const ImageSet truth = truthOf(moved, 128);
+        const auto& diffuse = truth.find("diffuse_indirect")->pixels;
+        const auto& glossy = truth.find("glossy_indirect")->pixels;
+        double got = 0.0, asked = 0.0;
+        size_t pixels = 0;
+        for (size_t i = 0; i < frame->albedo.size(); ++i)
+        {
+            // The ball is nearer to the eye than the boxes behind it.
+            if (std::abs(frame->roughness[i] - roughness) > 0.01f || std::abs(frame->albedo[i].x - 0.8f) > 0.01f ||
+                std::abs(frame->albedo[i].z - 0.8f) > 0.01f)
+                continue;
+            ++pixels;
+            got += frame->diffuseIndirect[i].y + frame->glossyIndirect[i].y;
+            asked += diffuse[3 * i + 1] + glossy[3 * i + 1];
+        }
+        ASSERT_GT(pixels, 60u);
+        EXPECT_NEAR(got / asked, 1.0, 0.15) << "roughness " << roughness << ", metallic " << metallic;
+    }
 }
 
 TEST_F(SceneRendererTest, SameFrameTwiceIsTheSameToTheBit)
