@@ -35,7 +35,7 @@ std::string costOf(std::string_view name)
         return "A ray a pixel of glossy tiles of about 20 distance reads, " + bytes(kImageBytes, "pixel") + ", " +
                bytes(radiance, "probe") + " at faces of 256 texels.";
     if (name == "mirror") return "A ray a pixel of mirroring tiles, " + bytes(kImageBytes, "pixel") + "; the radiance of glossy.";
-    if (name == "denoise") return "Three filter passes over glossy tiles, " + bytes(kImageBytes, "pixel") + ".";
+    if (name == "denoise") return "Four filter passes over glossy tiles, " + bytes(kImageBytes, "pixel") + ".";
     if (name == "masked") return "A texture read a pixel where something is cut out, in G-buffer, bake and shadow maps.";
     return "Nothing: every surface is lit and seen from both sides.";
 }

@@ -1,5 +1,6 @@
 #include "runtime/environment_brdf.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shaders/shared/brdf.h"
