@@ -10,6 +10,7 @@
 #include <tbb/task_group.h>
 
 #include "bench/path_tracer.h"
+#include "scene/camera_check.h"
 
 namespace sconce
 {
@@ -51,11 +52,7 @@ Status check(const ReferenceSettings& s)
     if (s.samples == 0 || s.samples > 1048576) return bad("samples", std::to_string(s.samples), "1 to 1048576 a pixel");
     if (s.bounces > 64) return bad("bounces", std::to_string(s.bounces), "0 to 64");
     if (s.roughness && !(*s.roughness >= 0.0f && *s.roughness <= 1.0f)) return bad("roughness", std::to_string(*s.roughness), "0 to 1");
-    const Camera& c = s.camera;
-    if (!(c.verticalFov > 0.0f && c.verticalFov < 3.1f)) return bad("camera fov", std::to_string(c.verticalFov), "0 to 3.1 radians");
-    const float area = glm::length(glm::cross(c.forward, c.up));
-    if (!(area > 1e-6f) || !std::isfinite(area) || !std::isfinite(glm::length(c.eye)))
-        return bad("camera '" + c.name + "'", "degenerate", "a finite eye and a forward and an up that are not parallel");
+    if (const std::string fault = cameraFault(s.camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     return success();
 }
 

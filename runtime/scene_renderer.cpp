@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "scene/camera_check.h"
+
 #include "spirv/area_light_comp.h"
 #include "spirv/compose_comp.h"
 #include "spirv/direct_comp.h"
@@ -113,11 +115,11 @@ Status SceneRenderer::make()
         return success();
     };
     if (auto s = image(depth, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth"); !s) return s;
-    for (auto [target, what] : {std::pair{&normalRoughness, "normals"},
-                                {&baseColorMetallic, "base colour"},
-                                {&emission, "emission"},
-                                {&geometricNormal, "geometric normals"}})
-        if (auto s = image(*target, kGBufferFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
+    for (auto [target, format, what] : {std::tuple{&normalRoughness, kGBufferFormat, "normals"},
+                                        {&baseColorMetallic, kGBufferFormat, "base colour"},
+                                        {&emission, kLightFormat, "emission"}, // may be beyond the 65,504 of 16 bits
+                                        {&geometricNormal, kGBufferFormat, "geometric normals"}})
+        if (auto s = image(*target, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
     for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
                                         {&beauty, "picture", true},
                                         {&scratch, "scratch of the diffuse filter", effects.diffuse},
@@ -141,7 +143,7 @@ Status SceneRenderer::make()
     gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     indirect->setInputs(gBuffer);
 
-    const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kGBufferFormat, kGBufferFormat};
+    const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
     const float roughness = settings.roughness.value_or(-1.0f);
     uint32_t specialization = 0;
@@ -420,6 +422,7 @@ uint64_t SceneRenderer::deviceBytes() const
 
 Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
 {
+    if (const std::string fault = cameraFault(camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     auto timer = GpuTimer::create(gpu, 16);
     if (!timer) return timer.error();
     auto status = gpu.submit(

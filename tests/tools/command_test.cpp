@@ -131,6 +131,24 @@ TEST(Command, BadInputExitsWith3AndNamesIt)
                    "broken.json");
 }
 
+TEST(Command, EmptySceneExitsWith3AndASentence)
+{
+    const TestFolder folder;
+    const std::string scene = folder / "empty.gltf", probes = folder / "probes.json";
+    std::ofstream(scene) << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]})";
+    std::ofstream(probes) << R"({"probes":[{"position":[0,0,0],"why":"pinned"}]})";
+    const std::vector<std::string> lines[] = {{"check", scene},
+                                              {"place", scene, "-o", folder / "placed.json"},
+                                              {"bake", scene, "--probes", probes, "-o", folder / "field.sconce"}};
+    for (const auto& line : lines)
+    {
+        const CommandResult result = sconceCommand(line);
+        EXPECT_EQ(result.exit, 3) << line[0];
+        EXPECT_NE(result.err.find("triangles"), std::string::npos) << line[0] << ": " << result.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "field.sconce"));
+}
+
 TEST(Command, FilesThatCannotBeReadOrWrittenExitWith5)
 {
     const TestFolder folder;

@@ -1,0 +1,20 @@
+#include "scene/camera_check.h"
+
+#include <cmath>
+
+namespace sconce
+{
+
+std::string cameraFault(const Camera& camera)
+{
+    const std::string name = camera.name.empty() ? "The camera" : "The camera '" + camera.name + "'";
+    if (!(camera.verticalFov > 0.0f && camera.verticalFov < 3.1f))
+        return name + " has a vertical field of view of " + std::to_string(camera.verticalFov) + " radians; choose above 0 and below 3.1";
+    if (!std::isfinite(glm::length(camera.eye))) return name + " has an eye that is not finite; give its position in metres";
+    const float area = glm::length(glm::cross(camera.forward, camera.up));
+    if (!(area > 1e-6f) || !std::isfinite(area))
+        return name + " has a forward and an up that are parallel, of no length or not finite; give two directions that differ";
+    return {};
+}
+
+} // namespace sconce
