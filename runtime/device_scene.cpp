@@ -46,7 +46,7 @@ struct DepthPipelines
 {
     Pipeline opaque, masked;
 
-    static Result<DepthPipelines> create(Gpu& gpu, VkDescriptorSetLayout sceneSet, VkFormat format)
+    static Result<DepthPipelines> create(Gpu& gpu, VkDescriptorSetLayout sceneSet, VkFormat format, bool hasMasked)
     {
         const VkDescriptorSetLayout sets[] = {sceneSet};
         Pipeline::Graphics desc;
@@ -57,6 +57,7 @@ struct DepthPipelines
         desc.depthFormat = format;
         auto opaque = Pipeline::graphics(gpu, desc);
         if (!opaque) return opaque.error();
+        if (!hasMasked) return DepthPipelines{std::move(*opaque), {}};
         desc.vertex = shadow_masked_vert;
         desc.fragment = shadow_masked_frag;
         desc.sets = sets;
@@ -218,9 +219,9 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
             for (const Kind& kind : kinds) toAttachment(cmd, kind.maps);
         });
     if (!status) return status;
-    auto deep = DepthPipelines::create(gpu, set.layout(), VK_FORMAT_D32_SFLOAT);
+    auto deep = DepthPipelines::create(gpu, set.layout(), VK_FORMAT_D32_SFLOAT, triangles.hasMasked());
     if (!deep) return deep.error();
-    auto flat = DepthPipelines::create(gpu, set.layout(), VK_FORMAT_D16_UNORM);
+    auto flat = DepthPipelines::create(gpu, set.layout(), VK_FORMAT_D16_UNORM, triangles.hasMasked());
     if (!flat) return flat.error();
     SceneDraws draws;
     for (size_t i = 0; i < lightList.lights.size(); ++i)

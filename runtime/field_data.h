@@ -30,6 +30,7 @@ struct FieldData
     uint32_t bounces = 0;
     std::string sceneName;
     std::vector<std::string> effects; // names of the effects the scene calls for
+    uint32_t fileVersion = 0;         // of the format of the file it was read from; 0: it was not read from one
 };
 
 /// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.

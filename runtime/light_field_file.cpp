@@ -519,6 +519,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     uint64_t rawBytes[sectionCount] = {};
     for (const Block& block : table->blocks) rawBytes[block.section] += block.rawBytes;
     FieldData field;
+    field.fileVersion = table->header.version;
     OctreeHeader treeHeader{};
     std::string text;
     Bytes stored;

@@ -113,6 +113,7 @@ Status ProbeBaker::createPipelines()
     desc.depthFormat = kDepthFormat;
     for (const auto& [pipeline, fragment] : {std::pair<Pipeline*, Spirv>{&opaque, bake_gbuffer_frag}, {&masked, bake_gbuffer_masked_frag}})
     {
+        if (pipeline == &masked && !scene.mesh().hasMasked()) continue;
         desc.fragment = fragment;
         auto made = Pipeline::graphics(gpu, desc);
         if (!made) return made.error();
@@ -202,6 +203,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
         gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
         gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
         const SceneView view = faceView(centre, face, kNear * info.diagonal);
+        scene.mesh().leaveOutBackFaces(cmd, view);
         scene.mesh().cull(view, draws);
         for (const auto& [pipeline, runs] : {std::pair(&opaque, &draws.opaque), std::pair(&masked, &draws.masked)})
         {

@@ -68,6 +68,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
         const vec3 middle = (positions[corner.x] + positions[corner.y] + positions[corner.z]) / 3.0f;
         order[t] = {scene.materials[scene.triangleMaterial[t]].alphaCutoff > 0.0f ? 1u : 0u, morton((middle - low) / size), t};
     }
+    mesh.twoSided = scene.twoSided;
     std::sort(order.begin(), order.end());
 
     std::vector<Vertex> vertices;
@@ -138,6 +139,15 @@ void SceneMesh::bind(VkCommandBuffer cmd) const
     const VkDeviceSize offset = 0;
     gpu->vk.CmdBindVertexBuffers(cmd, 0, 1, &buffer, &offset);
     gpu->vk.CmdBindIndexBuffer(cmd, indices.handle(), 0, VK_INDEX_TYPE_UINT32);
+    gpu->vk.CmdSetCullMode(cmd, VK_CULL_MODE_NONE);
+}
+
+void SceneMesh::leaveOutBackFaces(VkCommandBuffer cmd, const SceneView& view) const
+{
+    if (twoSided) return;
+    // Every second face of a cube looks through a mirror: x right, y down and w forward are then left-handed.
+    const bool mirrored = glm::determinant(view.clip) > 0.0f;
+    gpu->vk.CmdSetCullMode(cmd, mirrored ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT);
 }
 
 void SceneMesh::draw(VkCommandBuffer cmd, std::span<const SceneDraws::Run> runs) const

@@ -42,6 +42,10 @@ public:
     /// All triangles.
     const SceneDraws& everything() const { return all; }
     void bind(VkCommandBuffer cmd) const;
+    /// After bind: leaves out the back faces that a view would see of a scene that is not two-sided. Shadow maps keep them: samples of an
+    /// emitter shine to both sides of it, and through a box if they met no back face.
+    void leaveOutBackFaces(VkCommandBuffer cmd, const SceneView& view) const;
+    bool hasMasked() const { return opaqueClusters < clusters.size(); }
     void draw(VkCommandBuffer cmd, std::span<const SceneDraws::Run> runs) const;
     uint64_t deviceBytes() const { return vertices.size() + indices.size(); }
 
@@ -59,6 +63,7 @@ private:
     Buffer vertices, indices;
     std::vector<Cluster> clusters; // opaque ones first
     size_t opaqueClusters = 0;
+    bool twoSided = true;
     SceneDraws all;
 };
 

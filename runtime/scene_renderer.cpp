@@ -177,7 +177,7 @@ Status SceneRenderer::make()
 bool SceneRenderer::hasAreaLight() const
 {
     const gpu::LightsHeader& lights = scene.lights().header;
-    return settings.areaLights && lights.emitterCount + lights.skyCount > 0;
+    return !settings.effects.tracedDiffuse && lights.emitterCount + lights.skyCount > 0; // traced light has them in it
 }
 
 /// Light of emitters and sky, and the filter over all diffuse light.
@@ -288,6 +288,7 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const SceneView& view)
     gBufferPass.bind(cmd, sets);
     gBufferPass.push(cmd, view);
     scene.mesh().bind(cmd);
+    scene.mesh().leaveOutBackFaces(cmd, view);
     scene.mesh().cull(view, draws);
     scene.mesh().draw(cmd, draws.opaque);
     scene.mesh().draw(cmd, draws.masked);

@@ -33,6 +33,7 @@ namespace sconce
     X(CmdPipelineBarrier2)                                                                                                                 \
     X(CmdPushConstants)                                                                                                                    \
     X(CmdResetQueryPool)                                                                                                                   \
+    X(CmdSetCullMode)                                                                                                                      \
     X(CmdSetScissor)                                                                                                                       \
     X(CmdSetViewport)                                                                                                                      \
     X(CmdUpdateBuffer)                                                                                                                     \

@@ -46,8 +46,9 @@ struct TextureRef
     vec2 uvOffset{0.0f};
 };
 
-/// glTF metallic-roughness. Every surface is lit and seen from both sides (real assets are not watertight); doubleSided is kept for
-/// reports. Alpha: a point is there when alpha >= alphaCutoff, else it is not there at all; BLEND is imported as a cutoff of 0.5.
+/// glTF metallic-roughness. Every surface is lit and seen from both sides (real assets are not watertight), unless Scene::twoSided
+/// says otherwise; doubleSided is kept for reports. Alpha: a point is there when alpha >= alphaCutoff, else it is not there at all; BLEND
+/// is imported as a cutoff of 0.5.
 struct Material
 {
     std::string name;
@@ -118,6 +119,7 @@ struct Scene
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     vec3 sky{0.0f};                    // radiance that arrives from every direction where nothing is hit, W/(m^2 sr)
+    bool twoSided = true;              // false: only the front (counter-clockwise) of a triangle is seen, by the eye and by probes
     std::vector<std::string> warnings; // what the importer ignored or mended, a sentence each
 
     Bounds bounds() const;

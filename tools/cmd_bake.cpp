@@ -30,7 +30,7 @@ int runBake(const BakeOptions& options, const Context& context)
     const Stopwatch watch;
     const Result<ProbeSet> set = loadProbes(options.probes);
     if (!set) return fail(set.error());
-    const Result<Scene> scene = options.scene.load(context);
+    Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device, .memoryBudget = options.memoryMb << 20});
     if (!device) return fail(device.error());
@@ -46,6 +46,8 @@ int runBake(const BakeOptions& options, const Context& context)
     settings.grid = set->grid;
     const Result<EffectPlan> plan = planEffects(checkScene(*scene), options.effects);
     if (!plan) return fail(plan.error());
+    noteGivenUp(context, *plan);
+    capScene(*scene, *plan);
     settings.radiance = plan->needsRadiance();
     settings.prefiltered = plan->needsPrefiltered() || !settings.radiance; // a traced ray's colour, when someone asks for one
     for (const PlannedEffect& effect : plan->effects)
@@ -118,8 +120,9 @@ void addBakeCommand(CLI::App& app, Context& context)
         ->check(unlisted(CLI::Range(uint64_t(1), uint64_t(1) << 20)))
         ->type_name("MIB");
     bake->add_option("--effects", options->effects,
-                     "auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them. Without glossy and "
-                     "mirror the file holds no radiance for traced rays: half of its size (default: auto)")
+                     "auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them; -NAME takes one away: "
+                     "auto,-sun bakes no sunlight. Without glossy and mirror the file holds no radiance for traced rays: half of its size "
+                     "(default: auto)")
         ->type_name("auto|all|none|LIST");
     addDevice(bake, options->device);
     options->quality.add(bake);

@@ -34,6 +34,7 @@ struct RenderOptions
     std::optional<float> roughness;
     float raysBelow = gpu::kRaysBelow;
     bool noDenoise = false, temporal = false;
+    std::string diffuse = "irradiance";
 };
 
 /// The plan for the scene as it is drawn: with --roughness every surface has that.
@@ -113,18 +114,23 @@ int runRender(const RenderOptions& options, const Context& context)
 {
     const Stopwatch watch;
     if (const std::string problem = options.pictures.problem(kFrameLayers); !problem.empty()) return fail(ErrorCode::badArgument, problem);
-    const Result<Scene> scene = options.scene.load(context);
+    Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
     const Result<EffectPlan> plan = choosePlan(options, *scene);
     if (!plan) return fail(plan.error());
-    for (const PlannedEffect& effect : plan->effects)
-        if (effect.called && !effect.on) note(context, "Given up: " + effect.name + ". " + effect.why);
+    noteGivenUp(context, *plan);
+    capScene(*scene, *plan);
     const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
     if (!data) return fail(data.error());
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, "Note: the light field was baked from scene '" + data->sceneName + "', this is '" + scene->name + "'.");
+
+    for (const PlannedEffect& effect : plan->effects)
+        if (effect.ofScene && !effect.givenUp.empty() && std::ranges::find(data->effects, effect.name) != data->effects.end())
+            note(context, "Note: the light field was baked with " + effect.name +
+                              ", and what it holds of that stays in indirect light; bake with the same --effects.");
 
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
     if (!device) return fail(device.error());
@@ -151,7 +157,7 @@ int runRender(const RenderOptions& options, const Context& context)
     settings.effects = plan->indirect();
     settings.effects.denoise = settings.effects.denoise && denoise;
     settings.effects.temporal = options.temporal;
-    settings.areaLights = plan->on("emitters") || plan->on("sky");
+    settings.effects.tracedDiffuse = options.diffuse == "traced";
     settings.raysBelow = options.raysBelow;
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,
@@ -194,6 +200,9 @@ int runRender(const RenderOptions& options, const Context& context)
     json["effects"] = Json::object();
     for (const PlannedEffect& effect : plan->effects) json["effects"][effect.name] = effect.on;
     json["effects"]["denoise"] = settings.effects.denoise;
+    json["given_up"] = Json::object();
+    for (const PlannedEffect& effect : plan->effects)
+        if (!effect.givenUp.empty()) json["given_up"][effect.name] = effect.givenUp;
     json["device_bytes"] = (*renderer)->deviceBytes();
     json["samples"] = settings.glossyRays;
     json["frames"] = options.frames;
@@ -229,8 +238,10 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->add_option(
             "--effects", options->effects,
             "auto: what the scene calls for, on the tiles of the picture that need it; all: every effect over the whole picture, for the "
-            "same pixels; none; or a list of effects, as `sconce check` names them, and denoise; -NAME takes one away, as in "
-            "auto,-mirror (default: auto)")
+            "same pixels; none; or a list of effects, as `sconce check` names them, and denoise: of the passes only those, of lights and "
+            "surfaces all, "
+            "where none of the kind is named; -NAME takes one away, as in "
+            "auto,-mirror,-sun (default: auto)")
         ->type_name("auto|all|none|LIST");
     command
         ->add_option(
@@ -239,10 +250,17 @@ void addRenderCommand(CLI::App& app, Context& context)
             "to 2)")
         ->check(unlisted(CLI::Range(0.0f, 2.0f)))
         ->type_name("R");
+    command
+        ->add_option("--diffuse", options->diffuse,
+                     "irradiance: diffuse light from prefiltered irradiance, emitters and sky from shadowed samples; traced: all of it by "
+                     "--samples cosine-weighted rays a pixel, filtered (default: irradiance)")
+        ->check(unlisted(CLI::IsMember({"irradiance", "traced"})))
+        ->type_name("irradiance|traced");
     addTracer(command, options->tracer);
     command
         ->add_option("--samples", options->samples,
-                     "Glossy rays a pixel, and eight times as many samples of emitters and of the sky; noise falls with the square root, "
+                     "Glossy and diffuse rays a pixel, and eight times as many samples of emitters and of the sky; noise falls with the "
+                     "square root, "
                      "time grows in proportion (default: 1; range: 1 to 64)")
         ->check(unlisted(CLI::Range(1u, 64u)))
         ->type_name("N");

@@ -58,7 +58,7 @@ Json fieldJson(const FieldData& field)
     json["origin"] = toJson(info.origin);
     json["scale"] = info.scale;
     json["sky"] = toJson(info.sky);
-    json["format_version"] = kFieldFileVersion;
+    json["format_version"] = field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion; // what was baked is written as that
     return json;
 }
 
@@ -74,9 +74,16 @@ void printField(const FieldData& field, const std::string& file)
               << "\n"
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
               << ", voxels of " << field.octree.voxel * info.scale << " m\n"
+              << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;
     std::cout << std::endl;
+}
+
+void noteGivenUp(const Context& context, const EffectPlan& plan)
+{
+    for (const PlannedEffect& effect : plan.effects)
+        if (!effect.givenUp.empty()) note(context, "Given up: " + effect.name + ". " + effect.givenUp);
 }
 
 Result<FieldData> loadFieldFor(const std::string& file, const std::string& tracer)

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "runtime/effect_plan.h"
 #include "runtime/field_data.h"
 #include "tools/common.h"
 
@@ -15,6 +16,9 @@ void printField(const FieldData& field, const std::string& file);
 /// A light field's file as a tracer reads it: "ours", or an opponent's name (bench/baselines.h), whose maps are made from the file's. The
 /// error's sentence says how to bake a field that the tracer can read.
 Result<FieldData> loadFieldFor(const std::string& file, const std::string& tracer);
+
+/// Tells what the plan gives up of what the scene calls for.
+void noteGivenUp(const Context& context, const EffectPlan& plan);
 
 /// --tracer ours|b0|b0plus|b0plus-octree|wang
 void addTracer(CLI::App* command, std::string& tracer);

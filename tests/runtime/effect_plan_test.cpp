@@ -43,12 +43,17 @@ TEST(EffectPlan, AllIsEverythingOverTheWholePicture)
 TEST(EffectPlan, AListIsTakenAsItIsAndAMinusTakesAway)
 {
     const EffectPlan list = planOf("town", "diffuse,mirror");
-    for (const PlannedEffect& effect : list.effects) EXPECT_EQ(effect.on, effect.name == "diffuse" || effect.name == "mirror");
+    for (const PlannedEffect& effect : list.effects)
+        EXPECT_EQ(effect.on, effect.ofScene ? effect.called : effect.name == "diffuse" || effect.name == "mirror") << effect.name;
     const EffectPlan less = planOf("town", "auto,-mirror");
     EXPECT_TRUE(less.called("mirror"));
     EXPECT_FALSE(less.on("mirror"));
     EXPECT_TRUE(less.on("glossy"));
-    for (const PlannedEffect& effect : planOf("town", "none").effects) EXPECT_FALSE(effect.on);
+    EXPECT_FALSE(less.effects[7].givenUp.empty()) << less.effects[7].name;
+    for (const PlannedEffect& effect : planOf("town", "none").effects) EXPECT_EQ(effect.on, effect.ofScene && effect.called);
+    const EffectPlan noSun = planOf("town", "diffuse,sky");
+    EXPECT_TRUE(noSun.on("sky") && noSun.on("thin-two-sided") == noSun.called("thin-two-sided"));
+    EXPECT_FALSE(noSun.on("sun") || noSun.on("emitters")) << "of the lights only what is named";
 }
 
 TEST(EffectPlan, AnUnknownNameIsRefusedWithTheKnownOnes)

@@ -279,6 +279,24 @@ TEST_F(LightFieldFile, OtherVersionsAreRefusedByName)
     }
 }
 
+// A file of version 2 is one of version 3 without prefiltered radiance, but for its header's number.
+TEST_F(LightFieldFile, AnOlderFileSaysItsOwnVersion)
+{
+    FieldData field = smallField();
+    field.prefiltered.clear();
+    ASSERT_TRUE(saveField(field, file));
+    EXPECT_EQ(loadField(file)->fileVersion, kFieldFileVersion);
+    std::string bytes = readBytes(file);
+    bytes[8] = char(kOldestFieldFileVersion);
+    const uint64_t sum = XXH3_64bits(bytes.data(), 32);
+    std::memcpy(bytes.data() + 32, &sum, 8);
+    std::memcpy(bytes.data() + bytes.size() - 16, &sum, 8); // the footer has it again
+    writeBytes(file, bytes);
+    const Result<FieldData> older = loadField(file);
+    ASSERT_TRUE(older) << older.error().message;
+    EXPECT_EQ(older->fileVersion, kOldestFieldFileVersion);
+}
+
 TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
 {
     FieldData field = smallField();
