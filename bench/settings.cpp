@@ -82,6 +82,7 @@ std::vector<Knob> makeKnobs()
         knob("area samples", frame, placed, {"2", "8", "32"}, "samples", SCONCE_FIELD(frame.areaSamples)),
         knob("denoise", frame, placed, {"on", "off"}, "", SCONCE_FIELD(frame.effects.denoise)),
         knob("temporal", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.temporal)),
+        knob("traced diffuse", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.tracedDiffuse)),
         knob("rays below", frame, placed, {"0", "0.2", "1"}, "roughness", SCONCE_FIELD(frame.raysBelow)),
         knob("paths", frame, paths, {"1", "4", "16", "64"}, "paths a pixel", SCONCE_FIELD(paths)),
     };

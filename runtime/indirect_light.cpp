@@ -20,8 +20,10 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
                " pixels a side";
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
-    if ((desc.effects.glossy || desc.effects.mirror) && !field.holdsRadiance() && !field.holdsPrefiltered())
-        return "the light field holds no radiance; bake it with the effect 'glossy', or leave 'glossy' and 'mirror' out";
+    const bool rays = desc.effects.glossy || desc.effects.mirror || (desc.effects.diffuse && desc.effects.tracedDiffuse);
+    if (rays && !field.holdsRadiance() && !field.holdsPrefiltered())
+        return "the light field holds no radiance; bake it with the effect 'glossy', or leave 'glossy', 'mirror' and traced diffuse light "
+               "out";
     return {};
 }
 
@@ -64,17 +66,29 @@ Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
 
 Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
-    if (auto s = makeImage(image, kLightFormat, term == gpu::kTermMirror ? "mirrored light" : "glossy light"); !s) return s;
-    if (desc.counts && !countImage)
+    if (auto s = makeImage(image, kLightFormat,
+                           term == gpu::kTermMirror    ? "mirrored light"
+                           : term == gpu::kTermDiffuse ? "diffuse light"
+                                                       : "glossy light");
+        !s)
+        return s;
+    const bool counts = desc.counts && term != gpu::kTermDiffuse; // a pixel's reflections are counted
+    if (!counts && !noCounts) // what isn't written is bound all the same, in the format that the shader names
+    {
+        auto made = makeLightImage(*gpu, VK_FORMAT_R32G32B32A32_UINT, 1, 1, "stand-in for trace counts");
+        if (!made) return made.error();
+        noCounts = std::move(*made);
+    }
+    if (counts && !countImage)
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
-    return makePass(pipeline, set, shader, {&image, desc.counts ? &countImage : &image}, {term, desc.counts ? 1u : 0u});
+    return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts}, {term, counts ? 1u : 0u});
 }
 
 Status IndirectLight::makeGather()
 {
     const IndirectEffects& effects = desc.effects;
-    if (effects.diffuse)
+    if (gathersDiffuse())
         if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
     if (effects.rough)
     {
@@ -84,9 +98,10 @@ Status IndirectLight::makeGather()
         if (!buffer) return buffer.error();
         brdfTable = std::move(*buffer);
     }
-    const GpuImage& diffuse = effects.diffuse ? diffuseImage : roughImage;
+    const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
-    return makePass(gatherPass, gatherSet, gather_light_comp, {&diffuse, &rough}, {effects.diffuse ? 1u : 0u, effects.rough ? 1u : 0u});
+    return makePass(gatherPass, gatherSet, gather_light_comp, {&diffuse, &rough},
+                    {gathersDiffuse() ? 1u : 0u, effects.rough ? 1u : 0u, gatherList()});
 }
 
 Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, const Desc& desc)
@@ -107,8 +122,10 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
         if (!tiles) return tiles.error();
         made.tileList = std::make_unique<TileList>(std::move(*tiles));
     }
-    if (effects.diffuse || effects.rough)
+    if (made.gathersDiffuse() || effects.rough)
         if (auto s = made.makeGather(); !s) return s.error();
+    if (effects.diffuse && effects.tracedDiffuse)
+        if (auto s = made.makeTrace(gpu::kTermDiffuse, made.diffuseImage, made.diffusePass, made.diffuseSet); !s) return s.error();
     if (effects.mirror)
         if (auto s = made.makeTrace(gpu::kTermMirror, made.mirrorImage, made.mirrorPass, made.mirrorSet); !s) return s.error();
     if (!effects.glossy) return made;
@@ -124,7 +141,8 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
 
 void IndirectLight::setInputs(const FrameInputs& inputs)
 {
-    for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet}, {&mirrorPass, &mirrorSet}, {&gatherPass, &gatherSet}})
+    for (const auto& [pass, set] :
+         {std::pair{&glossyPass, &glossySet}, {&mirrorPass, &mirrorSet}, {&diffusePass, &diffuseSet}, {&gatherPass, &gatherSet}})
         if (*pass) writeInputs(*set, inputs);
     if (tileList) tileList->setInputs(inputs);
     if (denoiser) denoiser.setInputs(inputs);
@@ -162,7 +180,8 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
               });
     };
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
-    pass(gatherPass, gatherSet, gpu::kListGathered, "gather light");
+    pass(gatherPass, gatherSet, gatherList(), "gather light");
+    pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace");
     pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace");
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);

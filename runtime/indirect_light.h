@@ -29,7 +29,8 @@ public:
     void setInputs(const FrameInputs& inputs);
     /// Record frames in the order in which they are shown, where the effect `temporal` is on. Ends with the barrier that lets any later
     /// stage read the outputs (layout GENERAL).
-    /// @param timer  optional; scopes "classify tiles", "gather light", "glossy trace", "mirror trace", "glossy denoise"
+    /// @param timer  optional; scopes "classify tiles", "gather light", "diffuse trace", "glossy trace", "mirror trace",
+    ///               "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // Outputs, RGBA32F; empty when the effect is off. An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf)
@@ -38,7 +39,7 @@ public:
     {
         return diffuseImage;
     }                                                    // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light
-                                                         // straight from emitters or sky
+                                                         // straight from emitters or sky, unless it is traced
     const GpuImage& rough() const { return roughImage; } // rgb radiance reflected to the eye, BRDF included; as the next two
     const GpuImage& glossy() const { return glossyImage; }
     const GpuImage& mirror() const { return mirrorImage; }
@@ -54,14 +55,19 @@ private:
                     std::initializer_list<uint32_t> constants);
     Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
+    bool gathersDiffuse() const { return desc.effects.diffuse && !desc.effects.tracedDiffuse; }
+    uint32_t gatherList() const // of the tiles that the gathering pass runs on
+    {
+        return !gathersDiffuse() ? gpu::kTermRough : desc.effects.rough ? gpu::kListGathered : gpu::kTermDiffuse;
+    }
     Gpu* gpu = nullptr;
     const LightField* field = nullptr;
     Desc desc;
     Buffer frame, brdfTable;
-    GpuImage glossyImage, scratch, mirrorImage, countImage, diffuseImage, roughImage;
+    GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep
-    DescriptorSet glossySet, mirrorSet, gatherSet;
-    Pipeline glossyPass, mirrorPass, gatherPass;
+    DescriptorSet glossySet, mirrorSet, diffuseSet, gatherSet;
+    Pipeline glossyPass, mirrorPass, diffusePass, gatherPass;
     Denoiser denoiser;
 };
 

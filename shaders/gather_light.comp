@@ -9,6 +9,7 @@
 // by their prefiltered radiance. The leaf is looked up at points dithered by a voxel, so that no border of a voxel shows.
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 5) const uint kList = kListGathered;
 layout(constant_id = 3) const bool kDiffuse = true; // make the diffuse light
 layout(constant_id = 4) const bool kRough = true;   // make the rough reflections
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
@@ -31,7 +32,7 @@ vec2 reflectedShare(float cosine, float alpha)
 void main()
 {
     ivec2 at;
-    if (!findPixel(kListGathered, at)) return;
+    if (!findPixel(kList, at)) return;
     Pixel p = readPixel(at);
     uint terms = termsOf(p);
     bool wantDiffuse = kDiffuse && !isNotOf(kTermDiffuse, terms), wantRough = kRough && !isNotOf(kTermRough, terms);

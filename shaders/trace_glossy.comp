@@ -5,11 +5,12 @@
 #define SCONCE_TILE_CONSTANT 2
 #include "tiles.glsl"
 
-// Reflections by traced rays. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray. Dispatch: see findPixel.
+// Light by traced rays. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray; kTermDiffuse: cosine-weighted rays, whose
+// mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 3) const uint kTerm = kTermGlossy;
 layout(constant_id = 4) const bool kCount = true; // write the counts
-layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye; a: mean hit distance, metres
+layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
 layout(set = 1, binding = 5, rgba32ui) writeonly uniform uimage2D counts;  // probe of the last ray, hand-offs, reads, unknown rays
 
 void main()
@@ -20,6 +21,18 @@ void main()
     uint terms = termsOf(p);
     if (!p.surface || isNotOf(kTerm, terms)) return;
     vec4 result = vec4(0.0);
+    if (kTerm == kTermDiffuse)
+    {
+        TangentFrame frameOf = tangentFrame(p.normal);
+        for (uint i = 0u; i < frame.glossyRays; ++i)
+        {
+            vec3 direction = toWorld(frameOf, sampleCosine(randomPair(uvec2(at), i, 4u, frame.seed)));
+            RayHit hit = sconceQuery(p.position + frame.normalOffset * p.normal, normalize(direction));
+            result += vec4(hit.radiance, hit.t);
+        }
+        imageStore(reflected, at, result / float(frame.glossyRays));
+        return;
+    }
     uvec4 count = uvec4(kNoProbe, 0u, 0u, 0u); // probe, hand-offs, distance + index reads, unknown rays
     TangentFrame tangents = tangentFrame(p.normal);
     vec3 view = toTangent(tangents, p.view);

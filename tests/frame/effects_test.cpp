@@ -24,12 +24,13 @@ protected:
         RenderedFrame frame;
         uint64_t bytes = 0;
     };
-    Drawn draw(const Scene& scene, const FieldData& field, std::string_view wanted, uint32_t width, uint32_t height)
+    Drawn draw(const Scene& scene, const FieldData& field, std::string_view wanted, uint32_t width, uint32_t height, bool traced = false)
     {
         RenderSettings settings;
         settings.width = width;
         settings.height = height;
         settings.effects = planEffects(checkScene(scene), wanted)->indirect();
+        settings.effects.tracedDiffuse = traced;
         auto device = DeviceScene::create(gpu(), scene, field.info);
         auto light = LightField::create(gpu(), field);
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
@@ -81,6 +82,21 @@ TEST_F(EffectsTest, AutoIsAllToTheBit)
             EXPECT_TRUE(scene.name == "mixed" || some.bytes < all.bytes) << scene.name << " does not call for mirrors";
         }
     }
+}
+
+TEST_F(EffectsTest, TracedDiffuseLightTakesThePlaceOfIrradianceAndOfAreaLight)
+{
+    const Scene scene = mixedRoom();
+    const auto field = bakeField(scene, kProbes);
+    ASSERT_TRUE(field) << field.error().message;
+    const Drawn some = draw(scene, *field, "auto", 61, 45, true), all = draw(scene, *field, "all", 61, 45, true);
+    EXPECT_TRUE(some.frame.beauty == all.frame.beauty && some.frame.counts == all.frame.counts) << "to the bit";
+    EXPECT_FALSE(some.frame.diffuseIndirect == draw(scene, *field, "auto", 61, 45).frame.diffuseIndirect);
+    const std::set<std::string> passes = passesOf(some.frame);
+    EXPECT_TRUE(passes.contains("diffuse trace"));
+    EXPECT_FALSE(passes.contains("area light")) << "rays see emitters and sky";
+    EXPECT_TRUE(passes.contains("gather light")) << "of the rough reflections";
+    EXPECT_FALSE(passesOf(draw(scene, *field, "diffuse", 61, 45, true).frame).contains("gather light"));
 }
 
 TEST_F(EffectsTest, WhatIsNotCalledForHasNoPassAndNoBytes)

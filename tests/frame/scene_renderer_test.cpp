@@ -75,6 +75,18 @@ double relativeDifference(std::span<const float> a, std::span<const float> b)
     return sum / double(a.size()) / mean(b);
 }
 
+/// Means over squares of 8 x 8 pixels, in which the truth's own noise counts for little.
+std::vector<float> squares(std::span<const float> pixels)
+{
+    std::vector<float> means(pixels.size() / 64, 0.0f);
+    for (size_t i = 0; i < pixels.size(); ++i)
+    {
+        const size_t x = i / 3 % kSide / 8, y = i / 3 / kSide / 8;
+        means[3 * (y * (kSide / 8) + x) + i % 3] += pixels[i] / 64.0f;
+    }
+    return means;
+}
+
 TEST_F(SceneRendererTest, CornellMatchesThePathTracer)
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
@@ -90,6 +102,28 @@ TEST_F(SceneRendererTest, CornellMatchesThePathTracer)
     size_t unknown = 0;
     for (const auto& count : frame->counts) unknown += count.w;
     EXPECT_LT(double(unknown), 0.02 * 16 * kSide * kSide);
+}
+
+TEST_F(SceneRendererTest, TracedDiffuseLightIsNearerToThePathTracer)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    const auto field = bakeField(scene, kCornellProbes, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    RenderSettings settings = settingsFor();
+    settings.glossyRays = 64;
+    const auto read = drawWith(*field, scene, settings);
+    settings.effects.tracedDiffuse = true;
+    const auto traced = drawWith(*field, scene, settings);
+    ASSERT_TRUE(read && traced);
+    const ImageSet truth = truthOf(scene, 256);
+    const std::vector<float> asked = squares(truth.find("diffuse_indirect")->pixels);
+    const double of = relativeDifference(squares(floats(read->diffuseIndirect)), asked);
+    const double with = relativeDifference(squares(floats(traced->diffuseIndirect)), asked);
+    RecordProperty("irradiance", std::to_string(of));
+    RecordProperty("traced", std::to_string(with));
+    EXPECT_LT(with, of);
+    EXPECT_LT(with, 0.12) << "irradiance: " << of;
+    EXPECT_NEAR(mean(floats(traced->diffuseIndirect)) / mean(asked), 1.0, 0.03);
 }
 
 TEST_F(SceneRendererTest, GBufferIsWhatThePathTracerSees)
