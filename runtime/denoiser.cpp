@@ -1,5 +1,7 @@
 #include "runtime/denoiser.h"
 
+#include "runtime/nan_scan.h"
+
 #include "spirv/denoise_comp.h"
 #include "spirv/temporal_comp.h"
 
@@ -43,8 +45,13 @@ Result<GpuImage> makeLightImage(Gpu& gpu, VkFormat format, uint32_t width, uint3
         [&](VkCommandBuffer cmd)
         {
             transition(gpu, cmd, *image,
-                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                        0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_CLEAR_BIT, 0,
+                        VK_ACCESS_2_TRANSFER_WRITE_BIT});
+            const VkClearColorValue nothing{};
+            const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+            gpu.vk.CmdClearColorImage(cmd, image->handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                          VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
         });
     if (!status) return status.error();
     return image;
@@ -153,6 +160,7 @@ void Denoiser::blend(VkCommandBuffer cmd, VkDescriptorSet firstSet)
     const VkDescriptorSet sets[] = {firstSet, own.blend.handle()};
     temporal.bind(cmd, sets);
     dispatchTiles(*gpu, cmd, desc.tiles, desc.term, desc.width, desc.height);
+    scanImage(*gpu, cmd, "blend over time", own.light);
 }
 
 void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)

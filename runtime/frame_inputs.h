@@ -18,7 +18,7 @@ struct FrameInputs
 Result<DescriptorSet> makeFrameSet(Gpu& gpu, const Buffer& frame, std::span<const DescriptorSet::Binding> passBindings);
 void writeInputs(DescriptorSet& set, const FrameInputs& inputs);
 
-/// A storage image of the passes, in VK_IMAGE_LAYOUT_GENERAL.
+/// A storage image of the passes, in VK_IMAGE_LAYOUT_GENERAL, all 0.
 Result<GpuImage> makeLightImage(Gpu& gpu, VkFormat format, uint32_t width, uint32_t height, const char* what);
 
 } // namespace sconce

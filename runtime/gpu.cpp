@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 #include <cstring>
+
+#include "runtime/nan_scan.h"
 
 namespace sconce
 {
@@ -25,6 +28,7 @@ void Buffer::swap(Buffer& other) noexcept
     std::swap(buffer, other.buffer);
     std::swap(deviceAddress, other.deviceAddress);
     std::swap(bytes, other.bytes);
+    std::swap(name, other.name);
     std::swap(piece, other.piece);
 }
 
@@ -48,6 +52,7 @@ void GpuImage::swap(GpuImage& other) noexcept
     std::swap(wholeView, other.wholeView);
     std::swap(layerViews, other.layerViews);
     std::swap(made, other.made);
+    std::swap(name, other.name);
     std::swap(piece, other.piece);
 }
 
@@ -122,12 +127,21 @@ Result<std::unique_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     result = gpu->vk.CreateFence(host.device, &fenceInfo, host.allocationCallbacks, &gpu->fence);
     if (result != VK_SUCCESS) return gpu->failure("vkCreateFence", result);
+    if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
+    {
+        auto scan = NanScan::create(*gpu);
+        if (!scan) return scan.error();
+        gpu->scan = std::move(*scan);
+    }
     return gpu;
 }
+
+Gpu::Gpu(const HostVulkan& lent) : host(lent) {}
 
 Gpu::~Gpu()
 {
     staging = Buffer();
+    scan.reset();
     if (fence) vk.DestroyFence(host.device, fence, host.allocationCallbacks);
     if (commandPool) vk.DestroyCommandPool(host.device, commandPool, host.allocationCallbacks);
 }
@@ -141,6 +155,7 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     Buffer made;
     made.gpu = this;
     made.bytes = info.size;
+    made.name = what;
     VkResult result = vk.CreateBuffer(host.device, &info, host.allocationCallbacks, &made.buffer);
     if (result != VK_SUCCESS) return failure("vkCreateBuffer", result);
     VkMemoryRequirements needs;
@@ -177,6 +192,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     GpuImage made;
     made.gpu = this;
     made.made = desc;
+    made.name = what;
     VkResult result = vk.CreateImage(host.device, &info, host.allocationCallbacks, &made.image);
     if (result != VK_SUCCESS) return failure("vkCreateImage", result);
     VkMemoryRequirements needs;
@@ -229,7 +245,7 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
     result = vk.ResetFences(host.device, 1, &fence);
     if (result != VK_SUCCESS) return failure("vkResetFences", result);
-    return success();
+    return scan ? scan->findings() : success();
 }
 
 Status Gpu::ensureStaging()

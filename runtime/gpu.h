@@ -12,6 +12,7 @@ namespace sconce
 {
 
 class Gpu;
+class NanScan;
 
 /// A buffer with a device address; move-only. Destroy it after the GPU has finished with it and before its Gpu.
 class Buffer
@@ -26,6 +27,7 @@ public:
     VkDeviceAddress address() const { return deviceAddress; }
     VkDeviceSize size() const { return bytes; }
     std::byte* mapped() const { return piece.mapped(); } // null for device memory
+    const char* what() const { return name; }            // as it was made with
     explicit operator bool() const { return buffer != VK_NULL_HANDLE; }
 
 private:
@@ -35,6 +37,7 @@ private:
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceAddress deviceAddress = 0;
     VkDeviceSize bytes = 0;
+    const char* name = "";
     GpuMemory::Piece piece;
 };
 
@@ -63,6 +66,7 @@ public:
     /// A view of one layer, for rendering into it; made with ImageDesc::array.
     VkImageView layerView(uint32_t layer) const { return layerViews[layer]; }
     const ImageDesc& desc() const { return made; }
+    const char* what() const { return name; }
     VkImageAspectFlags aspect() const;
     explicit operator bool() const { return image != VK_NULL_HANDLE; }
 
@@ -74,6 +78,7 @@ private:
     VkImageView wholeView = VK_NULL_HANDLE;
     std::vector<VkImageView> layerViews;
     ImageDesc made;
+    const char* name = "";
     GpuMemory::Piece piece;
 };
 
@@ -93,11 +98,16 @@ public:
 
     GpuMemory& memory() { return *pool; }
 
-    /// Storage, transfer and device address usage are always there. Errors: outOfMemory, deviceFailure.
+    /// Null unless the environment says SCONCE_NAN_SCAN=1, see runtime/nan_scan.h.
+    NanScan* nanScan() { return scan.get(); }
+
+    /// Storage, transfer and device address usage are always there. `what` names it in messages and must be a literal. Errors: outOfMemory,
+    /// deviceFailure.
     Result<Buffer> makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage, MemoryUse use, const char* what);
     Result<GpuImage> makeImage(const ImageDesc& desc, const char* what);
 
-    /// Records into a command buffer of our own, submits it to the host's queue and waits.
+    /// Records into a command buffer of our own, submits it to the host's queue and waits. With SCONCE_NAN_SCAN=1: fails with what was
+    /// found.
     Status submit(const std::function<void(VkCommandBuffer)>& record);
     /// Copies through a staging buffer of at most 16 MiB, which stays for the next copy.
     Status upload(const Buffer& target, VkDeviceSize offset, std::span<const std::byte> bytes);
@@ -114,13 +124,14 @@ public:
     Error failure(const char* call, VkResult result) const;
 
 private:
-    explicit Gpu(const HostVulkan& lent) : host(lent) {}
+    explicit Gpu(const HostVulkan& lent);
     Status ensureStaging();
     std::unique_ptr<GpuMemory> pool;
     VkCommandPool commandPool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
     Buffer staging;
+    std::unique_ptr<NanScan> scan;
 };
 
 /// All memory writes of the first stages are visible to the second; enough wherever a pass follows a pass.

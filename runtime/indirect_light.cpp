@@ -1,6 +1,7 @@
 #include "runtime/indirect_light.h"
 
 #include "runtime/environment_brdf.h"
+#include "runtime/nan_scan.h"
 #include "spirv/gather_light_comp.h"
 #include "spirv/trace_glossy_comp.h"
 
@@ -179,14 +180,24 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
                   dispatchTiles(*gpu, cmd, tiles(), list, desc.width, desc.height);
               });
     };
+    const auto scan = [&](const char* name, std::initializer_list<const GpuImage*> images)
+    {
+        for (const GpuImage* image : images)
+            if (*image) scanImage(*gpu, cmd, name, *image);
+    };
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
     pass(gatherPass, gatherSet, gatherList(), "gather light");
+    scan("gather light", {&diffuseImage, &roughImage});
     pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace");
+    scan("diffuse trace", {&diffuseImage});
     pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace");
+    scan("glossy trace", {&glossyImage});
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     pass(mirrorPass, mirrorSet, gpu::kTermMirror, "mirror trace");
+    scan("mirror trace", {&mirrorImage});
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field->descriptorSet()); });
+    scan("glossy denoise", {&glossyImage, &scratch});
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "runtime/nan_scan.h"
+
 #include "spirv/bake_bounce_comp.h"
 #include "spirv/bake_chain_comp.h"
 #include "spirv/bake_downsample_moments_comp.h"
@@ -60,7 +62,7 @@ Status ProbeBaker::createBuffers()
     if (!surface) return surface.error();
     surfaceImage = std::move(*surface);
     desc.format = kDepthFormat;
-    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     auto depth = gpu.makeImage(desc, "A probe's depth");
     if (!depth) return depth.error();
     depthImage = std::move(*depth);
@@ -222,6 +224,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
                {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, tests,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                 VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    scanImage(gpu, cmd, "bake faces", depthImage, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
@@ -238,12 +241,17 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     }
     const VkDescriptorSet both[] = {scene.descriptorSet(), images.handle()};
     dispatch(cmd, surfacePass, both, push, n, 6);
+    const auto scanLight = [&](const char* pass, VkDeviceSize first)
+    { scanBuffer(gpu, cmd, pass, light, {.kind = gpu::kScanRadiance, .first = first, .count = radianceWords}); };
     if (!octahedral)
     {
+        scanLight("bake surfaces", 0);
+        if (emitters) scanLight("bake surfaces", 2 * radianceWords);
         for (push.level = 2; push.level <= info.topLevel; push.level += 2)
             dispatch(cmd, chainPass, {}, push, (n + (1u << push.level) - 1) >> push.level, 6);
         push.level = 0; // the far bounds
         dispatch(cmd, chainPass, {}, push, uint32_t(std::ceil(std::sqrt(double(push.faceWords - n * n)))), 6);
+        scanBuffer(gpu, cmd, "bake chain", words, {.kind = gpu::kScanNearness, .count = info.wordsPerProbe});
         return;
     }
     push = pushFor(centre);
@@ -251,6 +259,8 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     const VkDescriptorSet imagesOnly[] = {images.handle()};
     dispatch(cmd, octahedralPass, imagesOnly, push, n, 1);
     dispatch(cmd, lowPass, {}, push, n / gpu::kLowFactor, 1);
+    scanBuffer(gpu, cmd, "bake octahedral map", words, {.kind = gpu::kScanDistance, .count = info.wordsPerProbe});
+    scanLight("bake octahedral map", 0);
 }
 
 void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
@@ -259,9 +269,14 @@ void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
     push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
     while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
     push.extra = cells.address();
-    dispatch(cmd, downsample[moments], {}, push, push.level, octahedral ? 1 : 6);
+    const uint32_t faces = octahedral ? 1 : 6;
+    dispatch(cmd, downsample[moments], {}, push, push.level, faces);
+    scanBuffer(gpu, cmd, moments ? "bake moments" : "bake irradiance", cells, {.count = VkDeviceSize(4) * faces * push.level * push.level});
     push.words = irradiance.address();
     dispatch(cmd, gather[moments], {}, push, gpu::kIrradianceSize, 1);
+    scanBuffer(
+        gpu, cmd, moments ? "bake moments" : "bake irradiance", irradiance,
+        {.kind = gpu::kScanIrradiance, .stride = 2, .mask = moments ? 2u : 1u}); // the other half is not made yet, or is the last bounce's
 }
 
 void ProbeBaker::copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from)
@@ -331,6 +346,7 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
             const VkDescriptorSet sets[] = {field.descriptorSet()};
             dispatch(cmd, bouncePass, sets, pushFor(centre), info.faceSize, octahedral ? 1 : 6);
+            scanBuffer(gpu, cmd, "bake bounce", light, {.kind = gpu::kScanRadiance, .count = radianceWords});
             recordGather(cmd, false);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "runtime/nan_scan.h"
 #include "scene/camera_check.h"
 
 #include "spirv/area_light_comp.h"
@@ -127,15 +128,9 @@ Status SceneRenderer::make()
                                         {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
     {
         if (!wanted) continue;
-        if (auto s = image(*target, kLightFormat, VK_IMAGE_USAGE_STORAGE_BIT, what); !s) return s;
-        auto status = gpu.submit(
-            [&](VkCommandBuffer cmd)
-            {
-                transition(gpu, cmd, *target,
-                           {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE,
-                            VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
-            });
-        if (!status) return status;
+        auto made = makeLightImage(gpu, kLightFormat, settings.width, settings.height, what);
+        if (!made) return made.error();
+        *target = std::move(*made);
     }
     auto block = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
     if (!block) return block.error();
@@ -326,6 +321,8 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (timer) timer->begin(cmd, "G-buffer");
     drawGBuffer(cmd, viewOf(camera, basis, space));
     if (timer) timer->end(cmd);
+    for (const GpuImage* image : {&depth, &normalRoughness, &baseColorMetallic, &emission, &geometricNormal})
+        scanImage(gpu, cmd, "G-buffer", *image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
@@ -341,6 +338,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     directPass.push(cmd, DirectPush{space.origin, space.scale, space.sky, scene.lights().header.deltaCount});
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
     if (timer) timer->end(cmd);
+    scanImage(gpu, cmd, "direct light", direct);
 
     indirect->record(cmd, view, timer);
 
@@ -358,16 +356,21 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
         dispatchTiles(gpu, cmd, indirect->tiles(), gpu::kTermDiffuse, settings.width, settings.height);
         if (timer) timer->end(cmd);
+        scanImage(gpu, cmd, "area light", indirect->diffuse());
     }
     if (denoiser)
     {
         if (timer) timer->begin(cmd, "diffuse denoise");
         denoiser.record(cmd, scene.descriptorSet());
         if (timer) timer->end(cmd);
+        scanImage(gpu, cmd, "diffuse denoise", indirect->diffuse());
+        scanImage(gpu, cmd, "diffuse denoise", scratch);
     }
     begin(composePass, composeSet, "compose");
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
     if (timer) timer->end(cmd);
+    for (const GpuImage* image : {&beauty, &diffuseLayer, &glossyLayer})
+        if (*image) scanImage(gpu, cmd, "compose", *image);
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }
