@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <string>
+#include <tuple>
 
 #include "svo/parallel.h"
 
@@ -35,16 +37,33 @@ struct Text // the shared chart and texel functions, in float
 };
 } // namespace maps_text
 
+/// Probes but those that stand exactly where an earlier one does: a list that named both would have one rank less.
+std::vector<uint32_t> distinctProbes(const ProbeMaps& maps)
+{
+    std::vector<uint32_t> probes(maps.probes.size());
+    std::iota(probes.begin(), probes.end(), 0u);
+    const auto key = [&](uint32_t p)
+    {
+        const vec3 c = maps.probes[p].centre;
+        return std::tuple(c.x, c.y, c.z);
+    };
+    std::ranges::stable_sort(probes, {}, key);
+    const auto again = std::ranges::unique(probes, {}, key);
+    probes.erase(again.begin(), again.end());
+    std::ranges::sort(probes);
+    return probes;
+}
+
 /// World box of what the probes see, its outermost share cut off on each side.
-void seenBounds(const ProbeMaps& maps, vec3& low, vec3& high)
+void seenBounds(const ProbeMaps& maps, std::span<const uint32_t> distinct, vec3& low, vec3& high)
 {
     constexpr size_t kMost = 1u << 20; // samples of all probes, about
     constexpr double kCut = 0.01;
     maps_text::Text text;
-    const size_t size = maps.info.faceSize, probes = maps.probes.size();
+    const size_t size = maps.info.faceSize, probes = distinct.size();
     const size_t samples = std::clamp(size_t(std::sqrt(double(kMost) / double(6 * probes))), size_t(2), std::min<size_t>(24, size));
     std::array<std::vector<float>, 3> seen;
-    for (size_t probe = 0; probe < probes; ++probe)
+    for (const size_t probe : distinct)
         for (size_t face = 0; face < 6; ++face)
             for (size_t y = 0; y < samples; ++y)
                 for (size_t x = 0; x < samples; ++x)
@@ -88,7 +107,7 @@ uint32_t weightOf(const gpu::ProbeHeader& probe, vec3 regionCentre, float region
     return uint32_t(std::max(1.0, std::floor(kWeightAtOneVoxel / std::sqrt(distance) * (inside ? 1.0 : kOutsideInfluence))));
 }
 
-void findCandidates(const ProbeMaps& maps, OctreePlan& plan)
+void findCandidates(const ProbeMaps& maps, std::span<const uint32_t> distinct, OctreePlan& plan)
 {
     const gpu::OctreeBuild& build = plan.build;
     const float side = build.voxel * float(1 << build.regionShift);
@@ -99,8 +118,9 @@ void findCandidates(const ProbeMaps& maps, OctreePlan& plan)
                     const ivec3 region(int(i % build.regions.x), int(i / build.regions.x % build.regions.y),
                                        int(i / build.regions.x / build.regions.y));
                     const vec3 centre = vec3(build.low) + side * (vec3(region) + 0.5f);
-                    std::vector<glm::uvec2> all(maps.probes.size());
-                    for (size_t p = 0; p < all.size(); ++p) all[p] = {uint32_t(p), weightOf(maps.probes[p], centre, side, build.voxel)};
+                    std::vector<glm::uvec2> all;
+                    all.reserve(distinct.size());
+                    for (const uint32_t p : distinct) all.emplace_back(p, weightOf(maps.probes[p], centre, side, build.voxel));
                     std::partial_sort(all.begin(), all.begin() + build.candidates, all.end(),
                                       [](const glm::uvec2& a, const glm::uvec2& b) { return a.y != b.y ? a.y > b.y : a.x < b.x; });
                     std::copy_n(all.begin(), build.candidates, plan.candidates.begin() + ptrdiff_t(i * build.candidates));
@@ -132,9 +152,10 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     if (const std::string fault = argumentFault(maps, settings); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     OctreePlan plan;
     Octree& tree = plan.tree;
-    seenBounds(maps, tree.boundsLow, tree.boundsHigh);
+    const std::vector<uint32_t> distinct = distinctProbes(maps);
+    seenBounds(maps, distinct, tree.boundsLow, tree.boundsHigh);
     const vec3 size = tree.boundsHigh - tree.boundsLow;
-    const int voxels = voxelsFor(settings, maps.probes.size());
+    const int voxels = voxelsFor(settings, distinct.size());
     tree.voxel = std::max({size.x, size.y, size.z}) / float(voxels);
     tree.topShift = settings.topShift;
     tree.topCells = glm::max(ivec3(glm::ceil(size / (tree.voxel * float(1 << tree.topShift)) - 1e-4f)), ivec3(1));
@@ -149,7 +170,7 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     build.regionShift = std::max(int(std::bit_width(unsigned(voxels / kRegionsAlong))) - 1, 2); // whole blocks
     build.regions = ((build.count - 1) >> build.regionShift) + 1;
     build.probeCount = uint32_t(maps.probes.size());
-    build.candidates = std::min(build.probeCount, gpu::kMostCandidates);
+    build.candidates = std::min(uint32_t(distinct.size()), gpu::kMostCandidates);
     build.faceSize = maps.info.faceSize;
     build.wordsPerProbe = maps.info.wordsPerProbe;
     build.sampleStep = 1;
@@ -161,7 +182,7 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     build.texelWidth = 2.0f / float(build.faceSize);
     build.topLevel = maps.info.topLevel;
     build.slack = 1.0f / float(build.faceSize);
-    findCandidates(maps, plan);
+    findCandidates(maps, distinct, plan);
     return plan;
 }
 

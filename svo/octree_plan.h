@@ -10,7 +10,8 @@ namespace sconce
 
 /// What is settled before the voxels are ranked, and the same for the device and the host: where the voxels lie, and which probes each
 /// region of them may list, heaviest first. A candidate's weight falls with the root of its distance and is lower where the region lies
-/// outside its influence box (median distance per cube face; Wang et al. 2019, section 4.1).
+/// outside its influence box (median distance per cube face; Wang et al. 2019, section 4.1). Of probes in one spot only the first is a
+/// candidate.
 struct OctreePlan
 {
     Octree tree; // its bounds and grid; no texels yet

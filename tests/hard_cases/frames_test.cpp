@@ -9,6 +9,7 @@
 #include "scene/mesh_builder.h"
 #include "tests/frame/frame_test.h"
 #include "tests/hard_cases/hard_case.h"
+#include "tests/hard_cases/hard_frames.h"
 #include "tests/trace/cornell_field.h"
 
 namespace sconce
@@ -47,30 +48,6 @@ size_t notFinite(const FieldData& field)
         for (uint32_t word : *words) bad += small(word);
     for (size_t i = 0; i + 1 < field.irradiance.size(); i += 2) bad += small(field.irradiance[i]) + half(field.irradiance[i + 1]);
     return bad;
-}
-
-double mean(const std::vector<vec3>& pixels)
-{
-    double sum = 0.0;
-    for (const vec3& p : pixels) sum += double(p.x) + double(p.y) + double(p.z);
-    return sum / double(3 * pixels.size());
-}
-double mean(const std::vector<float>& values)
-{
-    double sum = 0.0;
-    for (float v : values) sum += v;
-    return sum / double(values.size());
-}
-
-/// Few shadow maps: what is tested is not how well they sample.
-DeviceSceneDesc fewSamples()
-{
-    DeviceSceneDesc desc;
-    desc.light.emitterSamples = desc.light.skySamples = 12;
-    desc.light.emitterShadow = desc.light.pointShadow = 64;
-    desc.light.skyShadow = 128;
-    desc.light.sunShadow = 512;
-    return desc;
 }
 
 class HardFrames : public FrameTest

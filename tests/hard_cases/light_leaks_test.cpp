@@ -6,6 +6,7 @@
 #include "runtime/scene_renderer.h"
 #include "scene/mesh_builder.h"
 #include "tests/hard_cases/hard_case.h"
+#include "tests/hard_cases/hard_frames.h"
 #include "tests/support/device.h"
 
 namespace sconce
@@ -42,13 +43,6 @@ Scene darkRoom(float wall)
     return scene;
 }
 
-double meanOf(const std::vector<vec3>& pixels)
-{
-    double sum = 0.0;
-    for (const vec3& p : pixels) sum += double(p.x) + double(p.y) + double(p.z);
-    return sum / double(3 * pixels.size());
-}
-
 TEST_P(LightLeaks, DarkRoomStaysDark)
 {
     const float wall = 0.01f * float(GetParam());
@@ -75,15 +69,15 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     ASSERT_TRUE(renderer) << renderer.error().message;
     const auto dark = (*renderer)->render(scene.cameras[0]), lit = (*renderer)->render(scene.cameras[1]);
     ASSERT_TRUE(dark && lit);
-    EXPECT_GT(meanOf(lit->diffuseIndirect), 0.05);
-    EXPECT_GT(meanOf(lit->glossyIndirect), 0.005);
+    EXPECT_GT(mean(lit->diffuseIndirect), 0.05);
+    EXPECT_GT(mean(lit->glossyIndirect), 0.005);
     const double bound = GetParam() >= 5 ? 0.001 : 0.01;
     const std::string name = "wall of " + std::to_string(GetParam()) + " cm between sun and dark room";
-    expectAtMost(name + ": direct light, share of the lit side", dark->direct.size(), meanOf(dark->direct) / meanOf(lit->direct), bound);
+    expectAtMost(name + ": direct light, share of the lit side", dark->direct.size(), mean(dark->direct) / mean(lit->direct), bound);
     expectAtMost(name + ": diffuse indirect, share of the lit side", dark->direct.size(),
-                 meanOf(dark->diffuseIndirect) / meanOf(lit->diffuseIndirect), bound);
+                 mean(dark->diffuseIndirect) / mean(lit->diffuseIndirect), bound);
     expectAtMost(name + ": glossy indirect, share of the lit side", dark->direct.size(),
-                 meanOf(dark->glossyIndirect) / meanOf(lit->glossyIndirect), bound);
+                 mean(dark->glossyIndirect) / mean(lit->glossyIndirect), bound);
 }
 
 INSTANTIATE_TEST_SUITE_P(Centimetres, LightLeaks, testing::Values(1, 2, 5, 10, 20), testing::PrintToStringParamName());
