@@ -172,6 +172,7 @@ void RayTracer::record(VkCommandBuffer cmd, const Buffer& rays, const Buffer& hi
     pipeline.bind(cmd, sets);
     pipeline.push(cmd, count);
     gpu->vk.CmdDispatch(cmd, (count + 63) / 64, 1, 1);
+    static_assert(sizeof(gpu::RayHit) == 64);
     constexpr uint32_t words = sizeof(gpu::RayHit) / 4, floats = 0x87feu; // t, position, normal, radiance, confidence
     scanBuffer(*gpu, cmd, "trace rays", hits, {.count = VkDeviceSize(count) * words, .stride = words, .mask = floats});
     memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,

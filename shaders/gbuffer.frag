@@ -20,9 +20,13 @@ void main()
     if (!isThere(material, uv, uvDx, uvDy)) discard;
     SurfacePoint point = evaluateMaterial(material, uv, uvDx, uvDy);
     vec3 view = normalize(-relative);
-    vec3 geometric = normalize(cross(across, down));
+    // Through a telescope neighbouring pixels differ by less than positions are exact to: then the plane is the vertices' word.
+    vec3 plane = cross(across, down);
+    float finest = min(dot(across, across), dot(down, down)), squared = dot(normal, normal);
+    vec3 smooth_ = squared > 1e-12 ? normalize(normal) : view;
+    vec3 geometric = finest > 1e-11 * dot(relative, relative) && dot(plane, plane) > 1e-37 ? normalize(plane) : smooth_;
     if (dot(geometric, view) < 0.0) geometric = -geometric;
-    vec3 shading = normalize(normal);
+    vec3 shading = smooth_;
     if (dot(shading, geometric) < 0.0) shading = -shading;
     if (dot(shading, view) <= 0.0) shading = geometric; // interpolated away from the eye
     outNormalRoughness = vec4(shading, kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness);

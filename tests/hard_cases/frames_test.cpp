@@ -267,12 +267,16 @@ TEST_F(HardFrames, CamerasWhereNobodyStands)
     {
         const char* name;
         vec3 eye, forward;
+        float fov = 1.0f; // radians, vertical
     } places[] = {{"in a box", {-0.33f, 0.3f, -0.3f}, {0.0f, 0.0f, -1.0f}},
                   {"in a probe's centre", kFewProbes[1], {1.0f, 0.0f, 0.0f}},
                   {"in the plane of a wall", {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -1.0f}},
                   {"just off a wall", {0.0f, 1e-5f, 0.0f}, {0.0f, -1.0f, 0.0f}},
                   {"outside", {0.0f, 1.0f, 30.0f}, {0.0f, 0.0f, -1.0f}},
                   {"outside, looking away", {0.0f, 1.0f, 30.0f}, {0.0f, 0.0f, 1.0f}},
+                  {"through a telescope", {0.0f, 1.0f, 0.9f}, {0.0f, 0.0f, -1.0f}, 1e-3f},
+                  {"through a larger one, just off a wall", {0.5f, 1.0f, -0.999f}, {0.0f, 0.0f, -1.0f}, 1e-6f},
+                  {"with nearly a half space", {0.0f, 1.0f, 0.9f}, {0.0f, 0.0f, -1.0f}, 3.09f},
                   {"1e6 m outside", {1e6f, 1e6f, 1e6f}, {-0.57735027f, -0.57735027f, -0.57735027f}}};
     std::vector<Camera> cameras;
     for (const auto& place : places)
@@ -280,6 +284,7 @@ TEST_F(HardFrames, CamerasWhereNobodyStands)
         Camera camera;
         camera.eye = place.eye;
         camera.forward = place.forward;
+        camera.verticalFov = place.fov;
         camera.up = std::abs(place.forward.y) > 0.9f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f);
         cameras.push_back(camera);
         cameras.push_back(camera); // history of its own place, too

@@ -43,7 +43,9 @@ RaySet grazingRays(const RayScene& rays, const RaySet& starts)
         const float elevation = kMostElevation * random.uniform();
         directions.push_back(glm::normalize(std::cos(elevation) * glm::normalize(along) + std::sin(elevation) * n));
     }
-    return raySetFrom(rays, starts.origins, directions);
+    RaySet set = raySetFrom(rays, starts.origins, directions);
+    set.normals = starts.normals;
+    return set;
 }
 
 class Grazing : public testing::TestWithParam<GrazingCase>
