@@ -39,47 +39,31 @@ SCONCE_FN vec3 surfelRadiance(SCONCE_IN(TraceResult) hit)
     return sum / max(weights, real(1e-6));
 }
 
-/// Word index of a probe's irradiance map texel; coordinates may lie one outside.
-SCONCE_FN uint irradianceIndex(uint probe, int x, int y)
-{
-    ivec2 at = foldOctahedral(x, y, int(kIrradianceSize));
-    return 2u * ((probe * kIrradianceSize + uint(at.y)) * kIrradianceSize + uint(at.x));
-}
+/// Words of a texel of a probe's irradiance map: the irradiance, and after it the moments.
+SCONCE_FN uint irradianceIndex(uint probe, uint texel) { return 2u * (probe * kIrradianceSize * kIrradianceSize + texel); }
 
 /// Bilinear: cosine-weighted mean radiance (irradiance / pi) about direction d.
 SCONCE_FN vec3 probeIrradiance(uint probe, vec3 d)
 {
-    vec2 uv = octahedralFromDirection(d);
-    real x = uv.x * real(kIrradianceSize) - real(0.5);
-    real y = uv.y * real(kIrradianceSize) - real(0.5);
-    int x0 = int(floor(x));
-    int y0 = int(floor(y));
-    real fx = x - floor(x);
-    real fy = y - floor(y);
-    return (real(1.0) - fy) * ((real(1.0) - fx) * unpackRadiance(irradianceWord(irradianceIndex(probe, x0, y0))) +
-                               fx * unpackRadiance(irradianceWord(irradianceIndex(probe, x0 + 1, y0)))) +
-           fy * ((real(1.0) - fx) * unpackRadiance(irradianceWord(irradianceIndex(probe, x0, y0 + 1))) +
-                 fx * unpackRadiance(irradianceWord(irradianceIndex(probe, x0 + 1, y0 + 1))));
+    OctahedralTaps taps = octahedralTaps(octahedralFromDirection(d), int(kIrradianceSize));
+    return taps.weight.x * unpackRadiance(irradianceWord(irradianceIndex(probe, taps.texel.x))) +
+           taps.weight.y * unpackRadiance(irradianceWord(irradianceIndex(probe, taps.texel.y))) +
+           taps.weight.z * unpackRadiance(irradianceWord(irradianceIndex(probe, taps.texel.z))) +
+           taps.weight.w * unpackRadiance(irradianceWord(irradianceIndex(probe, taps.texel.w)));
+}
+
+SCONCE_FN vec2 texelMoments(uint probe, uint texel)
+{
+    uint word = irradianceWord(irradianceIndex(probe, texel) + 1u);
+    return vec2(halfToReal(word), halfToReal(word >> 16));
 }
 
 /// Bilinear: (mean, variance) of the distance seen in direction d, field units.
 SCONCE_FN vec2 probeMoments(uint probe, vec3 d)
 {
-    vec2 uv = octahedralFromDirection(d);
-    real x = uv.x * real(kIrradianceSize) - real(0.5);
-    real y = uv.y * real(kIrradianceSize) - real(0.5);
-    int x0 = int(floor(x));
-    int y0 = int(floor(y));
-    real fx = x - floor(x);
-    real fy = y - floor(y);
-    vec2 sum = vec2(real(0.0), real(0.0));
-    for (int tap = 0; tap < 4; ++tap)
-    {
-        uint word = irradianceWord(irradianceIndex(probe, x0 + (tap & 1), y0 + (tap >> 1)) + 1u);
-        real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
-        sum += weight * vec2(halfToReal(word), halfToReal(word >> 16));
-    }
-    return sum;
+    OctahedralTaps taps = octahedralTaps(octahedralFromDirection(d), int(kIrradianceSize));
+    return taps.weight.x * texelMoments(probe, taps.texel.x) + taps.weight.y * texelMoments(probe, taps.texel.y) +
+           taps.weight.z * texelMoments(probe, taps.texel.z) + taps.weight.w * texelMoments(probe, taps.texel.w);
 }
 
 /// Whether a probe's map (cube chart) knows a surface between the probe and a point, relative to its centre. A wall thinner than the spread

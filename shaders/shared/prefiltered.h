@@ -31,28 +31,42 @@ SCONCE_FN ivec2 foldOctahedral(int x, int y, int n)
     return ivec2(x, y);
 }
 
-/// Word index of a probe's prefiltered texel; coordinates may lie one outside.
-SCONCE_FN uint prefilteredIndex(uint probe, int level, int x, int y)
+/// The four texels of a bilinear look-up, as y * n + x, and their weights.
+struct OctahedralTaps
 {
-    int n = int(kPrefilteredSize) >> level;
-    ivec2 at = foldOctahedral(x, y, n);
-    uint before = (4u * kPrefilteredSize * kPrefilteredSize - 4u * uint(n * n)) / 3u; // words of the finer levels
-    return probe * kPrefilteredWords + before + uint(at.y * n + at.x);
-}
+    uvec4 texel;
+    vec4 weight;
+};
 
-SCONCE_FN vec3 prefilteredLevel(uint probe, int level, vec2 uv)
+/// Of an octahedral map of n texels a side; across its border the look-up goes on where the sphere does.
+SCONCE_FN OctahedralTaps octahedralTaps(vec2 uv, int n)
 {
-    int n = int(kPrefilteredSize) >> level;
     real x = uv.x * real(n) - real(0.5);
     real y = uv.y * real(n) - real(0.5);
     int x0 = int(floor(x));
     int y0 = int(floor(y));
     real fx = x - floor(x);
     real fy = y - floor(y);
-    return (real(1.0) - fy) * ((real(1.0) - fx) * unpackRadiance(prefilteredWord(prefilteredIndex(probe, level, x0, y0))) +
-                               fx * unpackRadiance(prefilteredWord(prefilteredIndex(probe, level, x0 + 1, y0)))) +
-           fy * ((real(1.0) - fx) * unpackRadiance(prefilteredWord(prefilteredIndex(probe, level, x0, y0 + 1))) +
-                 fx * unpackRadiance(prefilteredWord(prefilteredIndex(probe, level, x0 + 1, y0 + 1))));
+    ivec2 a = foldOctahedral(x0, y0, n);
+    ivec2 b = foldOctahedral(x0 + 1, y0, n);
+    ivec2 c = foldOctahedral(x0, y0 + 1, n);
+    ivec2 d = foldOctahedral(x0 + 1, y0 + 1, n);
+    OctahedralTaps taps;
+    taps.texel = uvec4(uint(a.y * n + a.x), uint(b.y * n + b.x), uint(c.y * n + c.x), uint(d.y * n + d.x));
+    taps.weight = vec4((real(1.0) - fx) * (real(1.0) - fy), fx * (real(1.0) - fy), (real(1.0) - fx) * fy, fx * fy);
+    return taps;
+}
+
+SCONCE_FN vec3 prefilteredLevel(uint probe, int level, vec2 uv)
+{
+    int n = int(kPrefilteredSize) >> level;
+    uint before = (4u * kPrefilteredSize * kPrefilteredSize - 4u * uint(n * n)) / 3u; // words of the finer levels
+    uint first = probe * kPrefilteredWords + before;
+    OctahedralTaps taps = octahedralTaps(uv, n);
+    return taps.weight.x * unpackRadiance(prefilteredWord(first + taps.texel.x)) +
+           taps.weight.y * unpackRadiance(prefilteredWord(first + taps.texel.y)) +
+           taps.weight.z * unpackRadiance(prefilteredWord(first + taps.texel.z)) +
+           taps.weight.w * unpackRadiance(prefilteredWord(first + taps.texel.w));
 }
 
 /// Mean radiance that arrives at a probe's centre in a round lobe about a direction, W/(m^2 sr); emission and sky are in it. Trilinear over
