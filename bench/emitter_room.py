@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A furnished room under N equal square lamps, as glTF on stdout: what light of many emitters costs. All lamps together always shine alike.
-emitter_room.py N > room.gltf"""
+With --glossy the farthest box, small on screen, is of smooth metal: what one glossy object costs.
+emitter_room.py N [--glossy] > room.gltf"""
 import base64, json, math, struct, sys
 
 count = int(sys.argv[1])
@@ -27,7 +28,7 @@ def box(low, high, material, inward=False):
 
 box([-4, 0, -4], [4, 3, 4], 0, inward=True)
 for x, z, height in ((-2, -2, 1.0), (1.5, -1, 1.6), (-1, 1.5, 0.6), (2.5, 2, 2.0)):
-    box([x - 0.4, 0.001, z - 0.4], [x + 0.4, height, z + 0.4], 1)
+    box([x - 0.4, 0.001, z - 0.4], [x + 0.4, height, z + 0.4], 3 if x == -2 and "--glossy" in sys.argv else 1)
 across = math.ceil(math.sqrt(count))
 side = 0.8 / math.sqrt(count)  # 0.64 m^2 in all
 for i in range(count):
@@ -47,10 +48,11 @@ for material, indices in primitives.items():
     meshes.append({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": len(accessors) - 1, "material": material})
 diffuse = lambda name, color: {"name": name, "doubleSided": True, "pbrMetallicRoughness": {"baseColorFactor": color + [1], "metallicFactor": 0, "roughnessFactor": 1}}
 lamp = diffuse("lamp", [0, 0, 0]) | {"emissiveFactor": [1, 0.9, 0.8], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 12}}}
+metal = {"name": "metal", "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.6, 1], "metallicFactor": 1, "roughnessFactor": 0.2}}
 turn = math.radians(-12)
 json.dump({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_materials_emissive_strength"], "scene": 0, "scenes": [{"nodes": [0, 1]}],
            "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 1.7, 3.8], "rotation": [math.sin(turn / 2), 0, 0, math.cos(turn / 2)]}],
            "cameras": [{"name": "view", "type": "perspective", "perspective": {"yfov": 1.1, "znear": 0.01}}],
            "meshes": [{"primitives": meshes}], "accessors": accessors, "bufferViews": views,
-           "materials": [diffuse("wall", [0.7, 0.68, 0.64]), diffuse("box", [0.5, 0.3, 0.2]), lamp],
+           "materials": [diffuse("wall", [0.7, 0.68, 0.64]), diffuse("box", [0.5, 0.3, 0.2]), lamp, metal],
            "buffers": [{"byteLength": len(blob), "uri": "data:application/octet-stream;base64," + base64.b64encode(blob).decode()}]}, sys.stdout)

@@ -98,6 +98,7 @@ void addCounts(Json& json, const RenderedFrame& frame, uint32_t samples)
         fetches += frame.counts[i].z;
         unknown += frame.counts[i].w;
     }
+    json["traced_pixels"] = traced / double(frame.counts.size()); // share of the picture
     if (traced == 0.0) return;
     json["unknown_share"] = unknown / (traced * samples);
     json["fetches_per_ray"] = fetches / (traced * samples);
