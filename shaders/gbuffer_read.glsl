@@ -9,7 +9,7 @@ layout(scalar, set = 1, binding = 3) readonly buffer SconceFrame { FrameView fra
 
 struct Pixel
 {
-    bool surface;
+    bool surface;  // there is one; false too where the G-buffer's numbers are none
     vec3 position; // world, metres
     vec3 normal;   // on the viewer's side
     vec3 view;     // unit, towards the eye
@@ -23,12 +23,14 @@ Pixel readPixel(ivec2 at)
 {
     Pixel p;
     float depth = texelFetch(gDepth, at, 0).r;
-    p.surface = depth > 0.0;
     vec2 ndc = (vec2(at) + 0.5) / vec2(frame.size) * 2.0 - 1.0;
     vec4 world = frame.worldFromClip * vec4(ndc, depth, 1.0);
     p.position = world.xyz / world.w;
     vec4 normal = texelFetch(gNormalRoughness, at, 0);
     vec4 base = texelFetch(gBaseColorMetallic, at, 0);
+    // A host's number that is none would spread by every filter, and index tables out of their bounds: such a pixel shows nothing. false for NaN
+    float size = depth + dot(abs(normal), vec4(1.0)) + dot(abs(base), vec4(1.0));
+    p.surface = depth > 0.0 && size < 1e3 && dot(normal.xyz, normal.xyz) > 0.25;
     p.view = normalize(frame.eye - p.position);
     p.normal = normal.xyz;
     p.brdf.baseColor = base.rgb;

@@ -104,14 +104,15 @@ protected:
 
 TEST_F(MetamorphicPictures, ScaledByPowersOfTwo)
 {
-    for (const float scale : {0x1p-10f, 0x1p7f})
+    for (const float scale : {0x1p-11f, 0x1p16f}) // the box of 2 m as one of 1 mm and of 131 km
     {
         Picture scaled;
         scaled.map([&](vec3 p) { return scale * p; }, [](vec3 d) { return d; });
         const RenderedFrame frame = draw(scaled);
         size_t other = 0;
         for (size_t i = 0; i < frame.beauty.size(); ++i) other += frame.beauty[i] != plain().beauty[i];
-        expectAtMost(std::string("picture, scaled by ") + (scale < 1.0f ? "2^-10" : "2^7") + ": pixels with another bit",
+        expectAtMost(std::string("picture, scaled by ") + (scale < 1.0f ? "2^-11, to 1 mm" : "2^16, to 131 km") +
+                         ": pixels with another bit",
                      frame.beauty.size(), double(other), 0.0);
     }
 }
