@@ -76,6 +76,10 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     expectAtMost(name + ": direct light, share of the lit side", dark->direct.size(), mean(dark->direct) / mean(lit->direct), bound);
     expectAtMost(name + ": diffuse indirect, share of the lit side", dark->direct.size(),
                  mean(dark->diffuseIndirect) / mean(lit->diffuseIndirect), bound);
+    double brightest = 0.0;
+    for (const vec3& pixel : dark->diffuseIndirect) brightest = std::max(brightest, double(pixel.y));
+    expectAtMost(name + ": brightest pixel of diffuse indirect, share of the lit side's mean", dark->direct.size(),
+                 brightest / mean(lit->diffuseIndirect), 0.01);
     expectAtMost(name + ": glossy indirect, share of the lit side", dark->direct.size(),
                  mean(dark->glossyIndirect) / mean(lit->glossyIndirect), bound);
 }
