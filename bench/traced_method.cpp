@@ -172,7 +172,7 @@ std::vector<gpu::Ray> TracedMethod::raysOf(const RaySet& set) const
 {
     const float offset = how.opponent ? baselineOffset(*how.opponent) : 0.0f;
     std::vector<gpu::Ray> rays(set.size());
-    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + offset * set.normals[i], set.directions[i]};
+    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + offset * set.normals[i], set.directions[i], set.normals[i]};
     return rays;
 }
 
@@ -196,7 +196,7 @@ void TracedMethod::traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::Ray
                 {
                     twin::LightFieldTwin<float> text(field, how.quality.trace);
                     for (size_t i = batch * kBatch; i < std::min(rays.size(), (batch + 1) * kBatch); ++i)
-                        hits[i] = text.queryRay(rays[i].origin, rays[i].direction);
+                        hits[i] = text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
                 });
 }
 

@@ -54,7 +54,8 @@ const uint kBaseline = SCONCE_BASELINE;
 #include "shared/baseline_b0.h"
 #include "shared/baseline_wang.h"
 #include "shared/baseline_trace.h"
-#define sconceQuery baselineQuery
+RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return baselineQuery(origin, direction); } // no use for the normal
 #else
-#define sconceQuery queryRay
+/// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.
+RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return queryRay(origin, direction, normal); }
 #endif

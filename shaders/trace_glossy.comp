@@ -48,7 +48,7 @@ void main()
         vec3 fresnel = fresnelSchlick(reflectanceAtNormal(p.brdf), dot(view, halfway));
         // weight of a visible-normal sample: F G2 / G1 (Heitz 2018)
         float weight = mirror ? 1.0 : 4.0 * view.z * direction.z * smithVisibility(direction.z, view.z, alpha) / max(smithMasking(view.z, alpha), 1e-6);
-        RayHit hit = sconceQuery(p.position + frame.normalOffset * p.normal, normalize(toWorld(tangents, direction)));
+        RayHit hit = sconceQuery(p.position + frame.normalOffset * p.normal, normalize(toWorld(tangents, direction)), p.normal);
         result += vec4(fresnel * weight * hit.radiance, hit.t);
         count.x = hit.probe;
         count.y += uint(hit.handoffs);

@@ -12,5 +12,5 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= count) return;
-    hits[i] = sconceQuery(rays[i].origin, rays[i].direction);
+    hits[i] = sconceQuery(rays[i].origin, rays[i].direction, rays[i].normal);
 }

@@ -60,7 +60,7 @@ Status traceOnCpu(const FieldData& field, std::optional<Baseline> baseline, Rays
                                                  twin::LightFieldTwin<float> text(field, Quality{}.trace);
                                                  const size_t begin = first + batch * kBatch, end = std::min(begin + kBatch, first + count);
                                                  for (size_t i = begin; i < end; ++i)
-                                                     hits[i] = text.queryRay(rays[i].origin, rays[i].direction);
+                                                     hits[i] = text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
                                              });
                                  return success();
                              });

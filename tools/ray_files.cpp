@@ -16,6 +16,7 @@ namespace
 {
 
 constexpr const char* kRaysHeader = "ox,oy,oz,dx,dy,dz";
+constexpr const char* kRaysWithNormalsHeader = "ox,oy,oz,dx,dy,dz,nx,ny,nz";
 constexpr const char* kHitsHeader = "status,t,x,y,z,nx,ny,nz,r,g,b,probe,handoffs,distance_fetches,index_fetches";
 
 /// One number, which may be followed by spaces; false when it is not one. Beyond the range of float it becomes infinite or zero.
@@ -65,9 +66,10 @@ Result<std::vector<gpu::Ray>> readRays(const std::filesystem::path& file)
         return Error{ErrorCode::fileError,
                      "Cannot read rays from '" + file.string() + "'; give a CSV file with a header and a ray a line."};
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line != kRaysHeader)
+    const int columns = line == kRaysWithNormalsHeader ? 9 : 6;
+    if (columns == 6 && line != kRaysHeader)
         return Error{ErrorCode::badInput, "Rays file '" + file.string() + "' begins with '" + line.substr(0, 60) +
-                                              "' instead of the header " + kRaysHeader + "."};
+                                              "' instead of the header " + kRaysHeader + " or " + kRaysWithNormalsHeader + "."};
     std::vector<gpu::Ray> rays;
     for (size_t number = 2; std::getline(stream, line); ++number)
     {
@@ -75,15 +77,17 @@ Result<std::vector<gpu::Ray>> readRays(const std::filesystem::path& file)
         gpu::Ray ray{};
         const char *at = line.data(), *end = line.data() + line.size();
         bool good = true;
-        for (int column = 0; column < 6 && good; ++column)
+        for (int column = 0; column < columns && good; ++column)
         {
-            float& value = column < 3 ? ray.origin[column] : ray.direction[column - 3];
+            glm::vec3& vector = column < 3 ? ray.origin : (column < 6 ? ray.direction : ray.normal);
+            float& value = vector[column % 3];
             good = (column == 0 || (at != end && *at++ == ',')) && parseNumber(at, end, value);
         }
         if (!good || at != end)
             return Error{ErrorCode::badInput, "Line " + std::to_string(number) + " of '" + file.string() + "' is '" + line.substr(0, 60) +
-                                                  "' instead of six numbers separated by commas."};
+                                                  "' instead of " + (columns == 9 ? "nine" : "six") + " numbers separated by commas."};
         ray.direction = unitOrZero(ray.direction);
+        ray.normal = unitOrZero(ray.normal);
         rays.push_back(ray);
     }
     if (stream.bad())

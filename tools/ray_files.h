@@ -10,9 +10,8 @@
 namespace sconce::tools
 {
 
-/// rays.csv: header ox,oy,oz,dx,dy,dz, then a ray a line; numbers as text, nan and inf included.
-/// Directions come back unit, or zero where they have none. Errors: fileError; badInput names the
-/// line.
+/// rays.csv: header ox,oy,oz,dx,dy,dz or ox,oy,oz,dx,dy,dz,nx,ny,nz (Ray::normal), then a ray a line; numbers as text, nan and inf
+/// included. Directions and normals come back unit, or zero where they have none. Errors: fileError; badInput names the line.
 Result<std::vector<gpu::Ray>> readRays(const std::filesystem::path& file);
 
 /// hits.csv in the order of the rays; a number that is not finite is written as 0. Whole or not at all.

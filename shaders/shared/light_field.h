@@ -86,8 +86,9 @@ struct Ray
 {
     vec3 origin;
     vec3 direction; // unit
+    vec3 normal;    // unit, of the surface that the ray starts on, on the side where it starts; 0: none known. It chooses the first probe
 };
-SCONCE_CHECK_SIZE(Ray, 24);
+SCONCE_CHECK_SIZE(Ray, 36);
 
 struct RayHit
 {

@@ -59,9 +59,21 @@ SCONCE_FN void enterProbe(SCONCE_INOUT(RayState) r, uint probe, real t)
     r.phase = kPhaseSegment;
 }
 
+/// Unit normal of a texel's plane, field space, facing the probe.
+SCONCE_FN vec3 texelNormal(int face, vec2 pixel, uint word)
+{
+    real half_ = real(0.5) * real(field.faceSize);
+    real u = (floor(pixel.x) + real(0.5)) / half_ - real(1.0);
+    real v = (floor(pixel.y) + real(0.5)) / half_ - real(1.0);
+    real qu = unpackGradient(word >> 16) * half_;
+    real qv = unpackGradient(word >> 24) * half_;
+    return -faceDirection(face, normalize(vec3(qu, qv, real(1.0) - u * qu - v * qv)));
+}
+
 /// Next probe. After a hit in a large texel (r.opinionT): one of the leaf there that stands nearer, for a second opinion; what it sees
 /// counts, and where it comes to a dead end before the hit, or there is none, the hit stands. Else: the leaf's list at the point reached,
-/// then the lists a little further on; the ray ends as UNKNOWN when all were asked.
+/// then the lists a little further on; the ray ends as UNKNOWN when all were asked. At its start a ray asks those of a list that stand before
+/// the surface it starts on first: to one behind a thin sheet the start would look like a place on its own side.
 SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
 {
     bool opinion = r.opinionT >= real(0.0) && r.status == kHit;
@@ -81,26 +93,36 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
         }
     }
     vec3 own = r.relative + r.t * r.direction;
-    real best = real(0.36) * dot(own, own); // of an opinion: 0.6 of the distance, squared
+    real best = real(0.81) * dot(own, own); // of an opinion: 0.9 of the distance, squared
     uint found = kNoProbe;
+    vec3 hitNormal = vec3(real(0.0));
+    if (opinion) hitNormal = texelNormal(r.lastFace, r.pixel, r.hitWord);
+    bool starts = r.t <= real(0.5) * real(field.voxel);
     for (int list = 0; list < 3 && found == kNoProbe; ++list)
     {
         real ahead = opinion ? real(-0.02) : (list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75)));
+        uint behind = kNoProbe;
         uvec4 ranked = rankedProbesAt(r.origin + (r.t + ahead * real(field.voxel)) * r.direction, r.indexReads);
         for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
         {
             if (k >= quality.ranked) break;
             if (opinion)
             {
-                vec3 to = r.origin + r.t * r.direction - vec3(probeHeader(ranked[k]).centre);
-                if (ranked[k] != r.probe && dot(to, to) < best)
+                vec3 to = vec3(probeHeader(ranked[k]).centre) - (r.origin + r.t * r.direction);
+                if (ranked[k] != r.probe && dot(to, to) < best && dot(to, hitNormal) > real(0.0))
                 {
                     best = dot(to, to);
                     found = ranked[k];
                 }
             }
-            else if (found == kNoProbe && !wasTried(r.tried, ranked[k])) found = ranked[k];
+            else if (found == kNoProbe && !wasTried(r.tried, ranked[k]))
+            {
+                bool faces = !starts || dot(vec3(probeHeader(ranked[k]).centre) - r.origin, r.startNormal) >= real(0.0);
+                if (faces) found = ranked[k];
+                else if (behind == kNoProbe) behind = ranked[k];
+            }
         }
+        if (found == kNoProbe) found = behind;
         if (opinion) break;
     }
     if (found == kNoProbe || (!opinion && r.tried.count >= kMaxTried))
@@ -120,11 +142,12 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
     r.back = real(0.0);
 }
 
-SCONCE_FN RayState beginRay(vec3 origin, vec3 direction)
+SCONCE_FN RayState beginRay(vec3 origin, vec3 direction, vec3 normal)
 {
     RayState r;
     r.origin = origin;
     r.direction = direction;
+    r.startNormal = normal;
     r.tMax = fieldExit(origin, direction);
     r.t = real(0.0);
     r.status = kUnknown;
@@ -164,10 +187,10 @@ SCONCE_FN void turn(SCONCE_INOUT(RayState) r)
 /// steps a segment, kMarchSteps a turn); a fine event that goes on advances one. Derived, never reached by a ray that makes progress.
 SCONCE_FN int turnLimit() { return (quality.maxHandoffs + 1) * (64 + 6 * int(field.faceSize)); }
 
-/// A ray at its start; one that is not finite, or has no unit direction, is done at once: a MISS at t = 0 with no probe.
-SCONCE_FN RayState startRay(vec3 origin, vec3 direction)
+/// A ray at its start; one that is not finite, or has no unit direction, is done at once: a MISS at t = 0 with no probe. `normal`: see Ray.
+SCONCE_FN RayState startRay(vec3 origin, vec3 direction, vec3 normal)
 {
-    RayState r = beginRay(origin, direction);
+    RayState r = beginRay(origin, direction, normal);
     real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
     if (!(sum < real(1e18)) || !(abs(dot(direction, direction) - real(1.0)) < real(1e-3)))
     {
@@ -208,21 +231,10 @@ SCONCE_FN TraceResult resultOf(SCONCE_IN(RayState) r)
 }
 
 /// One ray, field space, unit direction.
-SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction)
+SCONCE_FN TraceResult traceRay(vec3 origin, vec3 direction, vec3 normal)
 {
-    RayState r = startRay(origin, direction);
+    RayState r = startRay(origin, direction, normal);
     int limit = turnLimit();
     for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
     return resultOf(r);
-}
-
-/// Unit normal of a texel's plane, field space, facing the probe.
-SCONCE_FN vec3 texelNormal(int face, vec2 pixel, uint word)
-{
-    real half_ = real(0.5) * real(field.faceSize);
-    real u = (floor(pixel.x) + real(0.5)) / half_ - real(1.0);
-    real v = (floor(pixel.y) + real(0.5)) / half_ - real(1.0);
-    real qu = unpackGradient(word >> 16) * half_;
-    real qv = unpackGradient(word >> 24) * half_;
-    return -faceDirection(face, normalize(vec3(qu, qv, real(1.0) - u * qu - v * qv)));
 }

@@ -44,7 +44,9 @@ SCONCE_FN RayHit answerOf(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
 }
 
 /// A world-space ray through the light field with our tracer. Cost: about 30 distance reads on a cluttered indoor scene.
-SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction)
+SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction, vec3 normal)
 {
-    return answerOf(origin, direction, traceRay((origin - vec3(field.origin)) / real(field.scale), direction));
+    return answerOf(origin, direction, traceRay((origin - vec3(field.origin)) / real(field.scale), direction, normal));
 }
+
+SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction) { return queryRay(origin, direction, vec3(real(0.0))); }

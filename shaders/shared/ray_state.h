@@ -22,6 +22,7 @@ struct RayState
 {
     vec3 origin;    // field space
     vec3 direction; // unit
+    vec3 startNormal; // see Ray::normal
     real tMax;
     real t;         // reached so far: everything before is known to be free
     int phase;

@@ -59,15 +59,14 @@ Scene curtains()
     MeshBuilder mesh(scene);
     const uint32_t cloth = mesh.material("cloth", vec3(0.5f));
     mesh.box({0, 0, 0}, {4, 3, 4}, cloth);
-    constexpr int kStrips = 48;
     for (const float x : {1.0f, 2.0f, 3.0f})
     {
         const auto at = [&](int i, float y)
         {
-            const float z = 0.5f + 3.0f * float(i) / float(kStrips);
+            const float z = 0.5f + 3.0f * float(i) / float(kCurtainStrips);
             return vec3(x + 0.12f * std::sin(9.0f * z + 4.0f * x), y, z);
         };
-        for (int i = 0; i < kStrips; ++i) mesh.quad(at(i, 0.0f), at(i + 1, 0.0f), at(i + 1, 2.6f), at(i, 2.6f), cloth);
+        for (int i = 0; i < kCurtainStrips; ++i) mesh.quad(at(i, 0.0f), at(i + 1, 0.0f), at(i + 1, 2.6f), at(i, 2.6f), cloth);
     }
     mesh.camera("a", {0.4f, 1.5f, 2.0f}, {2.0f, 1.4f, 2.1f}, 70.0f);
     mesh.camera("b", {1.5f, 1.2f, 1.8f}, {2.0f, 1.4f, 3.1f}, 70.0f);

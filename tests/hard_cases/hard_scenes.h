@@ -31,6 +31,7 @@ inline constexpr vec3 kBoxHalf{1.0f, 0.75f, 0.5f};
 
 /// Three wavy sheets without thickness across a closed room of 4 x 3 x 4 m.
 Scene curtains();
+inline constexpr int kCurtainStrips = 48; // flat pieces of a sheet, along z
 
 /// Sponza of the folder of real scenes; nothing where that is missing.
 std::optional<Scene> sponza();

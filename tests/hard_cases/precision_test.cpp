@@ -66,14 +66,14 @@ TEST_F(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
     auto tracer = RayTracer::create(gpu(), *device);
     ASSERT_TRUE(tracer) << tracer.error().message;
     std::vector<gpu::Ray> rays(set.size());
-    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i]};
+    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i], i % 2 == 0 ? set.normals[i] : glm::vec3(0.0f)};
     std::vector<gpu::RayHit> hits(rays.size());
     ASSERT_TRUE(tracer->trace(rays, hits));
     twin::LightFieldTwin<float> text(field, defaultQuality());
     size_t integers = 0, far = 0;
     for (size_t i = 0; i < rays.size(); ++i)
     {
-        const gpu::RayHit cpu = text.queryRay(rays[i].origin, rays[i].direction);
+        const gpu::RayHit cpu = text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
         const bool same = cpu.status == hits[i].status && cpu.probe == hits[i].probe && cpu.handoffs == hits[i].handoffs &&
                           cpu.distanceReads == hits[i].distanceReads && cpu.indexReads == hits[i].indexReads;
         integers += !same;

@@ -19,9 +19,9 @@ public:
     Walk(const FieldData& data, const gpu::TraceQuality& quality) : field(data), text(data, quality) {}
 
     /// World-space ray; the answer in metres.
-    TracedRay trace(V origin, V direction, double* t = nullptr)
+    TracedRay trace(V origin, V direction, double* t = nullptr, V normal = V(0))
     {
-        auto r = text.startRay((origin - V(field.info.origin)) / Real(field.info.scale), direction);
+        auto r = text.startRay((origin - V(field.info.origin)) / Real(field.info.scale), direction, normal);
         const int limit = text.turnLimit();
         int turns = 0, falls = 0;
         while (r.phase != text.kPhaseDone && turns < limit)
@@ -62,7 +62,8 @@ template <class Real> std::vector<TracedRay> walkAll(Walk<Real>& walk, const Ray
 {
     std::vector<TracedRay> out;
     for (size_t i = 0; i < set.size(); ++i)
-        out.push_back(walk.trace(glm::vec<3, Real>(set.origins[i]), glm::vec<3, Real>(set.directions[i])));
+        out.push_back(walk.trace(glm::vec<3, Real>(set.origins[i]), glm::vec<3, Real>(set.directions[i]), nullptr,
+                                 glm::vec<3, Real>(set.normals[i])));
     return out;
 }
 

@@ -297,6 +297,14 @@ TEST(Command, PipelineFromSceneToHits)
     writeText(folder / "rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,0,1,0,0\n0,0,zero,1,0,0\n");
     expectSentence(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits2.csv", "-q"}), 3,
                    "Line 3");
+    writeText(folder / "rays.csv", "ox,oy,oz,dx,dy,dz,nx,ny,nz\n0,1,0,0,-1,0,0,-2,0\n0,1,0,0,-1,0,0,0,0\n0,1,0,0,-1,0,nan,inf,0\n");
+    ASSERT_EQ(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "n.csv", "--cpu", "-q"}).exit, 0);
+    const auto withNormals = csvRows(readText(folder / "n.csv"));
+    ASSERT_EQ(withNormals.size(), 4u);
+    for (size_t i = 1; i < 4; ++i) EXPECT_EQ(withNormals[i][0], "hit");
+    writeText(folder / "rays.csv", "ox,oy,oz,dx,dy,dz,nx,ny,nz\n0,0,0,1,0,0\n");
+    expectSentence(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits2.csv", "-q"}), 3,
+                   "nine");
     writeText(folder / "rays.csv", "x,y,z\n");
     expectSentence(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits2.csv", "-q"}), 3,
                    "header");

@@ -38,7 +38,7 @@ TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
     auto tracer = RayTracer::create(gpu(), *device);
     ASSERT_TRUE(tracer) << tracer.error().message;
     std::vector<gpu::Ray> rays(set.size());
-    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i]};
+    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i], i % 2 == 0 ? set.normals[i] : glm::vec3(0.0f)};
     std::vector<gpu::RayHit> hits(rays.size());
     ASSERT_TRUE(tracer->trace(rays, hits));
 
@@ -46,7 +46,7 @@ TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
     size_t different = 0;
     for (size_t i = 0; i < rays.size(); ++i)
     {
-        const gpu::RayHit cpu = text.queryRay(rays[i].origin, rays[i].direction);
+        const gpu::RayHit cpu = text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
         const gpu::RayHit& got = hits[i];
         if (cpu.status != got.status || cpu.probe != got.probe || cpu.handoffs != got.handoffs || cpu.distanceReads != got.distanceReads ||
             cpu.indexReads != got.indexReads || std::abs(cpu.t - got.t) > 2e-5f * cpu.t)

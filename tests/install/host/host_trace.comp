@@ -11,5 +11,5 @@ layout(scalar, push_constant) uniform Push { uint count; };
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i < count) hits[i] = queryRay(rays[i].origin, rays[i].direction);
+    if (i < count) hits[i] = queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
 }
