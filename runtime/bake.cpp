@@ -8,6 +8,7 @@
 #include "runtime/field_space.h"
 #include "runtime/octree_builder.h"
 #include "runtime/probe_baker.h"
+#include "runtime/probe_clearance.h"
 #include "runtime/tracer_cpu.h"
 #include "svo/parallel.h"
 
@@ -228,7 +229,11 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     bake.field.sceneName = scene.name;
     bake.field.effects = settings.effects;
     bake.field.probes.resize(probes.size());
-    for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (probes[i] - info.origin) / info.scale;
+    // A grid is looked up by its formula: its probes stay.
+    const ClearedProbes cleared = clearedOfSurfaces(scene, probes, settings.grid ? 0.0f : 2.0f * kProbeNear * info.diagonal * info.scale);
+    spent.moved = cleared.moved;
+    spent.tight = cleared.tight;
+    for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (cleared.positions[i] - info.origin) / info.scale;
 
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();

@@ -41,12 +41,15 @@ struct BakeReport
     /// and then what each bounce adds.
     std::vector<double> energy;
     uint32_t lights = 0; // delta lights, emitter samples and sky directions
+    uint32_t moved = 0;  // probes that stood on a surface, or nearer than the faces' near plane, and were moved off it
+    uint32_t tight = 0;  // of them, those that found no place, between surfaces: they see through one of them
 };
 
 /// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then by its own irradiance, bounce
 /// by bounce. A probe's maps before the first bounce don't depend on the other probes. Same input, same driver: same bytes.
 /// Specular reflection is baked as diffuse reflection of the same strength: a probe's texel holds one radiance for all directions.
-/// @param probes  world, metres; at least one, at most 65,535
+/// @param probes  world, metres; at least one, at most 65,535. One that stands on a surface, or nearer to it than 2e-4 of the diagonal, is moved
+///                off it (runtime/probe_clearance.h) where the probes are no grid
 /// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, cancelled.
 Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                  const Progress& progress, BakeReport& report);

@@ -28,7 +28,6 @@ namespace
 
 constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32B32A32_UINT; // layout: shaders/bake_gbuffer.frag
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr float kNear = 1e-4f; // share of the diagonal: a probe nearer than this to a surface doesn't see it
 
 void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 {
@@ -151,7 +150,7 @@ ProbeBaker::Push ProbeBaker::pushFor(vec3 centre) const
     push.emitted = emitters ? base + 2 * part : 0;
     push.extra = base + 3 * part;
     push.centre = centre;
-    push.nearPlane = kNear * info.diagonal;
+    push.nearPlane = kProbeNear * info.diagonal;
     push.size = info.faceSize;
     push.faceWords = octahedral ? 0 : info.wordsPerProbe / 6;
     push.chart = info.chart;
@@ -204,7 +203,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
         const VkRect2D scissor{{0, int32_t(n) * face}, {n, n}};
         gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
         gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
-        const SceneView view = faceView(centre, face, kNear * info.diagonal);
+        const SceneView view = faceView(centre, face, kProbeNear * info.diagonal);
         scene.mesh().leaveOutBackFaces(cmd, view);
         scene.mesh().cull(view, draws);
         for (const auto& [pipeline, runs] : {std::pair(&opaque, &draws.opaque), std::pair(&masked, &draws.masked)})

@@ -27,7 +27,7 @@ void main()
         for (uint i = 0u; i < frame.glossyRays; ++i)
         {
             vec3 direction = toWorld(frameOf, sampleCosine(randomPair(uvec2(at), i, 4u, frame.seed)));
-            RayHit hit = sconceQuery(p.position + frame.normalOffset * p.normal, normalize(direction));
+            RayHit hit = sconceQuery(p.position + frame.normalOffset * p.normal, normalize(direction), p.normal);
             result += vec4(hit.radiance, hit.t);
         }
         imageStore(reflected, at, result / float(frame.glossyRays));

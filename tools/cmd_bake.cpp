@@ -57,12 +57,21 @@ int runBake(const BakeOptions& options, const Context& context)
     BakeReport report;
     Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
     if (!field) return fail(field.error());
+    if (report.moved > 0 && !context.quiet)
+        std::cerr << "note: " << report.moved << " of " << positions.size()
+                  << " probes stood on a surface, or closer than a probe sees, and were moved off it"
+                  << (report.tight > 0
+                          ? "; " + std::to_string(report.tight) + " of them found no place between two surfaces: forbid or move them"
+                          : "")
+                  << "\n";
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     if (context.json)
     {
         Json json = fieldJson(*field);
         json["device"] = device->name();
         json["lights"] = report.lights;
+        json["probes_moved"] = report.moved;
+        json["probes_tight"] = report.tight;
         json["energy"] = report.energy;
         json["peak_device_bytes"] = report.peakDeviceBytes;
         json["stage_seconds"] = {{"scene", report.sceneSeconds},

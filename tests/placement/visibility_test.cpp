@@ -1,3 +1,4 @@
+#include "scene/closest_point.h"
 #include "placement/visibility.h"
 
 #include <gtest/gtest.h>
