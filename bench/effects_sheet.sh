@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Each effect alone: its error against the path tracer, its passes' time, and a row of a sheet: ours, reference, error in false colours.
 # Prints a Markdown table, writes OUT/effects.png.
-# Environment: SCONCE=the command, built when not given, SIZE=WxH [160x90], SPP=paths a pixel [1024], SCONCE_SCENES [../shared/scenes],
+# Environment: SCONCE=the command, built when not given, SIZE=WxH [160x90], SPP=paths a pixel [256], SCONCE_SCENES [../shared/scenes],
 # OUT=folder [out/sheet].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-out=${OUT:-out/sheet} size=${SIZE:-160x90} spp=${SPP:-1024} scenes=${SCONCE_SCENES:-../shared/scenes}
+out=${OUT:-out/sheet} size=${SIZE:-160x90} spp=${SPP:-256} scenes=${SCONCE_SCENES:-../shared/scenes}
 [[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
 sconce=${SCONCE:-build/release/tools/sconce}
 mkdir -p "$out"
@@ -44,6 +44,6 @@ mirror|cornell|8|glossy_indirect|mirror trace|--roughness 0 --effects mirror|--r
 emitters|$out/room16.gltf|12|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
 sun|temple|16|direct|direct light|--effects none|
 sky|temple|16|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
-masked, thin|$scenes/sponza/Sponza.gltf|54|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse|
+curtains, leaves|$scenes/sponza/Sponza.gltf|54|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse|
 LIST
 python3 bench/sheet.py "$out/effects.png" 3 "${pictures[@]}"
