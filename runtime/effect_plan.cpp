@@ -101,14 +101,14 @@ bool EffectPlan::called(std::string_view name) const
 
 IndirectEffects EffectPlan::indirect() const
 {
-    IndirectEffects effects;
-    effects.diffuse = on("diffuse");
-    effects.rough = on("rough");
-    effects.glossy = on("glossy");
-    effects.mirror = on("mirror");
-    effects.denoise = on("denoise");
-    effects.tiles = !wholePicture;
-    return effects;
+    IndirectEffects passes;
+    passes.diffuse = on("diffuse");
+    passes.rough = on("rough");
+    passes.glossy = on("glossy");
+    passes.mirror = on("mirror");
+    passes.denoise = on("denoise");
+    passes.tiles = !wholePicture;
+    return passes;
 }
 
 Result<EffectPlan> planEffects(const SceneReport& scene, std::string_view wanted)
