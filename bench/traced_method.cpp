@@ -8,6 +8,7 @@
 #include <sstream>
 #include <variant>
 
+#include "bench/octahedral_field.h"
 #include "bench/random.h"
 #include "runtime/face_chain_text.h"
 #include "runtime/light_field_file.h"
@@ -30,13 +31,16 @@ struct Spelled
 };
 
 /// Sets knobs from NAME:VALUE,...; the field's creation checks their ranges.
-Status setKnobs(gpu::TraceQuality& quality, const std::string& knobs)
+Status setKnobs(Tracer& how, const std::string& knobs)
 {
+    gpu::TraceQuality& quality = how.quality.trace;
+    int octahedral = 0;
     const std::pair<std::string_view, std::variant<int*, float*>> known[] = {
         {"ranked", &quality.ranked},         {"maxHandoffs", &quality.maxHandoffs},
         {"startLevel", &quality.startLevel}, {"coarsestLevel", &quality.coarsestLevel},
         {"tolerance", &quality.tolerance},   {"epsilon", &quality.epsilon},
-        {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds}};
+        {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds},
+        {"octahedral", &octahedral}};
     std::istringstream list(knobs);
     for (std::string knob; std::getline(list, knob, ',');)
     {
@@ -46,13 +50,14 @@ Status setKnobs(gpu::TraceQuality& quality, const std::string& knobs)
         if (found == std::end(known))
             return Error{ErrorCode::badArgument, "'" + std::string(name) +
                                                      "' is no knob of the tracer; give ranked, maxHandoffs, startLevel, "
-                                                     "coarsestLevel, tolerance, epsilon, opinion or farBounds"};
+                                                     "coarsestLevel, tolerance, epsilon, opinion, farBounds or octahedral"};
         const char* begin = knob.data() + std::min(colon + 1, knob.size());
         const char* end = knob.data() + knob.size();
         const auto read = std::visit([&](auto* value) { return std::from_chars(begin, end, *value); }, found->second);
         if (begin == end || read.ec != std::errc() || read.ptr != end)
             return Error{ErrorCode::badArgument, "'" + knob + "' has no number after its colon; write NAME:VALUE"};
     }
+    how.octahedral = uint32_t(octahedral);
     return success();
 }
 
@@ -118,7 +123,10 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData f
     made->label = std::move(label);
     made->how = how;
     Result<FieldData> data = std::move(field);
-    if (how.opponent) data = baselineField(std::move(*data), *how.opponent, how.lowFactor);
+    if (how.opponent)
+        data = baselineField(std::move(*data), *how.opponent, how.lowFactor);
+    else if (how.octahedral != 0)
+        data = octahedralField(*data, how.octahedral);
     if (!data) return data.error();
     made->field = std::move(*data);
     auto onDevice = LightField::create(gpu, made->field, how.quality);
@@ -139,7 +147,7 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
     if (!spelled) return spelled.error();
     Tracer how;
     how.lowFactor = spelled->lowFactor;
-    if (auto status = setKnobs(how.quality.trace, spelled->knobs); !status) return status.error();
+    if (auto status = setKnobs(how, spelled->knobs); !status) return status.error();
     auto data = loadField(spelled->file);
     if (!data) return data.error();
     if (!spelled->tracer.empty())
@@ -159,7 +167,7 @@ double TracedMethod::traceMebibytes() const
 {
     uint32_t words = field.info.wordsPerProbe;
     if (!how.opponent && how.quality.trace.farBounds == 0) // they are there, and not read
-        words = 6 * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
+        words = (how.octahedral != 0 ? 1 : 6) * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
     return double(words) * sizeof(uint32_t) / kMebibyte;
 }
 

@@ -30,6 +30,7 @@ struct Tracer
 {
     std::optional<Baseline> opponent; // none: ours
     Quality quality;                  // of ours
+    uint32_t octahedral = 0;          // of ours: texels a side of octahedral maps to trace instead of the cube faces, 0: the faces
     uint32_t lowFactor = 0;           // of an opponent, texels; 0: bestLowFactor
 };
 
@@ -39,9 +40,10 @@ class TracedMethod
 public:
     /// @param label  what the row is called
     static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, FieldData field, const Tracer& tracer, std::string label);
-    /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours`, which knobs of TraceQuality may follow (ours/ranked:2,opinion:0=F), or
-    ///              an opponent's name, which a low factor in texels may follow (b0plus/8=grid.sconce). Without a name: b0plus for
-    ///              octahedral maps on a grid, b0plus-octree for others, else ours.
+    /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours`, which knobs of TraceQuality may follow (ours/ranked:2,opinion:0=F) and
+    ///              octahedral:N, for maps of N texels a side made from the cube faces, or an opponent's name, which a low factor in texels
+    ///              may follow (b0plus/8=grid.sconce). Without a name: b0plus for octahedral maps on a grid, b0plus-octree for others, else
+    ///              ours.
     static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, const std::string& what);
 
     const std::string& name() const { return label; }

@@ -144,7 +144,7 @@ Status LightField::setQuality(const Quality& quality)
 
 std::array<uint32_t, 2> LightField::constants() const
 {
-    return {readsFarBounds ? 1u : 0u, radianceHeld ? 1u : 0u};
+    return {(readsFarBounds ? 1u : 0u) | (fieldInfo.chart == gpu::kChartOctahedral ? 2u : 0u), radianceHeld ? 1u : 0u};
 }
 
 Result<RayTracer> RayTracer::create(Gpu& gpu, const LightField& field, Spirv shader)

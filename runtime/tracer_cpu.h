@@ -53,6 +53,10 @@ template <class Real> struct LightFieldTwin
     {
         return quality.farBounds != 0;
     }
+    bool onOctahedron() const
+    {
+        return field.chart == gpu::kChartOctahedral;
+    }
     bool holdsRadiance() const
     {
         return !source.radiance.empty();

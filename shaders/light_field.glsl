@@ -23,9 +23,10 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
 layout(scalar, set = SCONCE_FIELD_SET, binding = 1) readonly buffer SconceProbes { ProbeHeader sconceProbes[]; };
 layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
 
-// TraceQuality::farBounds, a constant: a trace without them pays nothing for them. LightField::constants() holds its value.
-layout(constant_id = 0) const bool kReadFarBounds = false;
-bool readsFarBounds() { return kReadFarBounds; }
+// Of a pass, so that one without them pays nothing: bit 0 TraceQuality::farBounds, bit 1 the octahedral chart. LightField::constants() holds it.
+layout(constant_id = 0) const uint kFieldFlags = 0u;
+bool readsFarBounds() { return (kFieldFlags & 1u) != 0u; }
+bool onOctahedron() { return (kFieldFlags & 2u) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form.
 layout(constant_id = 1) const bool kHoldsRadiance = true;
 bool holdsRadiance() { return kHoldsRadiance; }

@@ -28,6 +28,46 @@ SCONCE_FN int dominantFace(vec3 p)
     return p.z < real(0.0) ? 5 : 4;
 }
 
+// The octahedral map as eight charts like the faces: within an octant (bit a: axis a is negative) a point's place on the map and
+// W = |x| + |y| + |z| are projective in p, so that straight lines stay straight and q = 1/W is linear over planes. All octants lie on one map.
+
+/// (U, V, W) of a probe-relative point in an octant; the map's pixel is N/2 (U/W + 1, V/W + 1), as a face's is.
+SCONCE_FN vec3 octantCoordinates(int octant, vec3 p)
+{
+    vec3 s = vec3((octant & 1) != 0 ? real(-1.0) : real(1.0), (octant & 2) != 0 ? real(-1.0) : real(1.0), (octant & 4) != 0 ? real(-1.0) : real(1.0));
+    real fold = (octant & 4) != 0 ? s.z * p.z : real(0.0); // the lower half is folded out
+    return vec3(p.x + s.x * fold, p.y + s.y * fold, s.x * p.x + s.y * p.y + s.z * p.z);
+}
+
+/// The inverse of octantCoordinates.
+SCONCE_FN vec3 octantDirection(int octant, vec3 uvw)
+{
+    vec3 s = vec3((octant & 1) != 0 ? real(-1.0) : real(1.0), (octant & 2) != 0 ? real(-1.0) : real(1.0), (octant & 4) != 0 ? real(-1.0) : real(1.0));
+    real u = s.x * uvw.x;
+    real v = s.y * uvw.y;
+    if ((octant & 4) != 0) return vec3(s.x * (uvw.z - v), s.y * (uvw.z - u), uvw.z - u - v);
+    return vec3(uvw.x, uvw.y, uvw.z - u - v);
+}
+
+/// Direction, not unit, of the normal of a plane from the gradient (of U, V, W) of a linear function over an octant: the transpose of
+/// octantCoordinates.
+SCONCE_FN vec3 octantNormal(int octant, vec3 g)
+{
+    vec3 s = vec3((octant & 1) != 0 ? real(-1.0) : real(1.0), (octant & 2) != 0 ? real(-1.0) : real(1.0), (octant & 4) != 0 ? real(-1.0) : real(1.0));
+    real fold = (octant & 4) != 0 ? s.x * g.x + s.y * g.y : real(0.0);
+    return vec3(g.x + s.x * g.z, g.y + s.y * g.z, s.z * (g.z + fold));
+}
+
+/// The transpose of octantDirection: a normal to the gradient.
+SCONCE_FN vec3 octantGradient(int octant, vec3 n)
+{
+    vec3 s = vec3((octant & 1) != 0 ? real(-1.0) : real(1.0), (octant & 2) != 0 ? real(-1.0) : real(1.0), (octant & 4) != 0 ? real(-1.0) : real(1.0));
+    if ((octant & 4) != 0) return vec3(-s.x * (s.y * n.y + n.z), -s.y * (s.x * n.x + n.z), s.x * n.x + s.y * n.y + n.z);
+    return vec3(n.x - s.x * n.z, n.y - s.y * n.z, n.z);
+}
+
+SCONCE_FN int octantOf(vec3 p) { return (p.x < real(0.0) ? 1 : 0) | (p.y < real(0.0) ? 2 : 0) | (p.z < real(0.0) ? 4 : 0); }
+
 /// Octahedral square [0,1]^2 of a direction (any length but zero).
 SCONCE_FN vec2 octahedralFromDirection(vec3 d)
 {

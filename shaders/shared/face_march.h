@@ -8,6 +8,18 @@
 /// Pixels are mirrored about the middle of this many texels, whole cells of every level, so that cells stay cells.
 SCONCE_FN int mirrorSize() { return int((field.faceSize + 63u) & ~63u); }
 
+// A probe's map is six faces, or, where onOctahedron(), one octahedral map of eight octants (chart.h); "face" stands for either.
+SCONCE_FN int mapFace(vec3 p) { return onOctahedron() ? octantOf(p) : dominantFace(p); }
+SCONCE_FN vec3 mapCoordinates(int face, vec3 p) { return onOctahedron() ? octantCoordinates(face, p) : faceCoordinates(face, p); }
+SCONCE_FN vec3 mapDirection(int face, vec3 uvw) { return onOctahedron() ? octantDirection(face, uvw) : faceDirection(face, uvw); }
+SCONCE_FN vec3 mapNormal(int face, vec3 g) { return onOctahedron() ? octantNormal(face, g) : faceDirection(face, g); }
+
+/// First word of the map that a face of a probe lies on.
+SCONCE_FN uint mapWords(uint probe, int face)
+{
+    return probe * field.wordsPerProbe + (onOctahedron() ? 0u : uint(face) * (field.wordsPerProbe / 6u));
+}
+
 /// The piece of the ray from r.ta to where it leaves the face, the free ball's surroundings or the field.
 SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
 {
@@ -41,10 +53,10 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
         r.phase = kPhaseChoose;
         return;
     }
-    r.face = r.nextFace >= 0 ? r.nextFace : dominantFace(r.relative + r.ta * r.direction);
+    r.face = r.nextFace >= 0 ? r.nextFace : mapFace(r.relative + r.ta * r.direction);
 
-    vec3 f0 = faceCoordinates(r.face, r.relative);
-    vec3 f1 = faceCoordinates(r.face, r.direction);
+    vec3 f0 = mapCoordinates(r.face, r.relative);
+    vec3 f1 = mapCoordinates(r.face, r.direction);
     real tb = r.tMax;
     int next = -1;
     if (ballIn < tb)
@@ -52,11 +64,17 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
         tb = ballIn;
         next = -2;
     }
-    for (int plane = 0; plane < 4; ++plane)
+    for (int plane = 0; plane < (onOctahedron() ? 3 : 4); ++plane)
     {
         real side = (plane & 1) != 0 ? real(1.0) : real(-1.0); // W - U, W + U, W - V, W + V
         real g0 = f0.z + side * (plane < 2 ? f0.x : f0.y);
         real g1 = f1.z + side * (plane < 2 ? f1.x : f1.y);
+        if (onOctahedron())
+        {
+            side = ((r.face >> plane) & 1) != 0 ? real(-1.0) : real(1.0); // x, y, z = 0
+            g0 = side * r.relative[plane];
+            g1 = side * r.direction[plane];
+        }
         if (g1 < real(0.0))
         {
             real t = -g0 / g1;
@@ -64,7 +82,7 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
             {
                 tb = t;
                 int axis = (r.face >> 1) + (plane < 2 ? 1 : 2);
-                next = 2 * (axis % 3) + (plane & 1);
+                next = onOctahedron() ? r.face ^ (1 << plane) : 2 * (axis % 3) + (plane & 1);
             }
         }
     }
@@ -115,8 +133,7 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
     r.s = real(0.0);
     r.came = 0;
     r.level = min(r.segments == 1 ? quality.startLevel : quality.coarsestLevel, int(field.topLevel));
-    uint wordsPerFace = field.wordsPerProbe / 6u;
-    r.faceWords = r.probe * field.wordsPerProbe + uint(r.face) * wordsPerFace;
+    r.faceWords = mapWords(r.probe, r.face);
     r.phase = kPhaseMarch;
 }
 

@@ -3,7 +3,8 @@
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {
-    return ((probe * 6u + uint(face)) * field.faceSize + uint(y)) * field.faceSize + uint(x);
+    uint map = onOctahedron() ? probe : probe * 6u + uint(face);
+    return (map * field.faceSize + uint(y)) * field.faceSize + uint(x);
 }
 
 /// Radiance leaving the surfel of a trace's result towards its probe, W/(m^2 sr). Bilinear over the texels that lie on the surfel's own
@@ -22,7 +23,7 @@ SCONCE_FN vec3 surfelRadiance(SCONCE_IN(TraceResult) hit)
     real qc = halfToReal(hit.word);
     real gx = unpackGradient(hit.word >> 16);
     real gy = unpackGradient(hit.word >> 24);
-    uint faceWords = hit.probe * field.wordsPerProbe + uint(hit.face) * (field.wordsPerProbe / 6u);
+    uint faceWords = mapWords(hit.probe, hit.face);
     vec3 sum = vec3(real(0.0));
     real weights = real(0.0);
     for (int tap = 0; tap < 4; ++tap)

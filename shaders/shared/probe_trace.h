@@ -1,6 +1,6 @@
-// The tracer: one ray through the light field, cube-face chart. Shared text: GLSL, or C++ inside a struct that names `real` and holds
+// The tracer: one ray through the light field. Shared text: GLSL, or C++ inside a struct that names `real` and holds
 // `field` (LightFieldInfo), `quality` (TraceQuality), and defines ProbeHeader probeHeader(uint), uint distanceWord(uint), octreeTexel(),
-// bool readsFarBounds().
+// bool readsFarBounds(), bool onOctahedron().
 //
 // What one probe can't tell of a ray (UNKNOWN, face_march.h) is handed to the next probe of the octree's leaf at that point, with the ray
 // re-entered BEFORE the cell that blocked it, so that the next probe misses nothing (Donow 2016, section on back faces).
@@ -67,7 +67,7 @@ SCONCE_FN vec3 texelNormal(int face, vec2 pixel, uint word)
     real v = (floor(pixel.y) + real(0.5)) / half_ - real(1.0);
     real qu = unpackGradient(word >> 16) * half_;
     real qv = unpackGradient(word >> 24) * half_;
-    return -faceDirection(face, normalize(vec3(qu, qv, real(1.0) - u * qu - v * qv)));
+    return -normalize(mapNormal(face, vec3(qu, qv, real(1.0) - u * qu - v * qv)));
 }
 
 /// Next probe. After a hit in a large texel (r.opinionT): one of the leaf there that stands nearer, for a second opinion; what it sees

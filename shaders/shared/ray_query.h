@@ -26,7 +26,7 @@ SCONCE_FN RayHit answer(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r, v
 SCONCE_FN vec3 pixelDirection(int face, vec2 pixel)
 {
     real half_ = real(0.5) * real(field.faceSize);
-    return normalize(faceDirection(face, vec3(pixel.x / half_ - real(1.0), pixel.y / half_ - real(1.0), real(1.0))));
+    return normalize(mapDirection(face, vec3(pixel.x / half_ - real(1.0), pixel.y / half_ - real(1.0), real(1.0))));
 }
 
 /// The answer of our tracer's result.
