@@ -159,6 +159,9 @@ SCONCE_FN uint cellIndex(SCONCE_IN(RayState) r, int x, int y, int level)
     return uint(cy) * chainWidth(field.faceSize, level) + uint(cx);
 }
 
+/// Slack of the hit rule at q, relative to the distance: no more than a texel is wide, so that a room in a landscape keeps its own measure.
+SCONCE_FN real slack(real q) { return min(quality.epsilon * real(field.diagonal) * q, real(2.0) / real(field.faceSize)); }
+
 /// Whether the ray, q between qs and qe, is behind everything in a cell by more than any surfel's thickness: what its texels would say one
 /// by one, said at once.
 SCONCE_FN bool behindCell(SCONCE_INOUT(RayState) r, uint index, real qs, real qe)
@@ -167,7 +170,7 @@ SCONCE_FN bool behindCell(SCONCE_INOUT(RayState) r, uint index, real qs, real qe
     uint word = distanceWord(r.faceWords + chainNearWords(field.faceSize, int(field.topLevel)) + cell / 2u);
     ++r.distanceReads;
     real footprint = real(2.0) / real(field.faceSize);
-    real thickest = quality.tolerance * footprint * real(8.84) + quality.epsilon * real(field.diagonal) * max(qs, qe); // 1/0.12 + 1/2
+    real thickest = quality.tolerance * footprint * real(8.84) + slack(max(qs, qe)); // 1/0.12 + 1/2
     return max(qs, qe) * (real(1.0) + thickest) < farBoundIn(word, cell);
 }
 
@@ -322,7 +325,7 @@ SCONCE_FN void fineEvent(SCONCE_INOUT(RayState) r)
     real qe = r.q0 + r.sEnd * r.dq;
     real qc = halfToReal(r.word);
     real footprint = real(2.0) / real(field.faceSize); // of a texel, relative to its distance
-    real epsilon = quality.epsilon * real(field.diagonal) * qs;
+    real epsilon = slack(qs);
     real gx = unpackGradient(r.word >> 16);
     real gy = unpackGradient(r.word >> 24);
     real slope = sqrt(gx * gx + gy * gy);
