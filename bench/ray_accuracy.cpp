@@ -2,8 +2,6 @@
 //   sconce_ray_accuracy SCENE --field [TRACER=]FILE... [--rays N] [--seed N] [--runs N] [--timed N] [--cpu] [--json] [--record FILE]
 // TRACER: ours, b0, b0plus, b0plus-octree, wang (bench/baselines.h); left out, the field tells. Rays leave surfaces that the scene's
 // cameras and points of the reachable space see, GGX alpha 0.1 to 0.3. --record keeps them for sconce_replay.
-#include <chrono>
-
 #include <CLI/CLI.hpp>
 
 #include "bench/race_options.h"
@@ -25,20 +23,6 @@ struct Options
     RaceSettings race;
 };
 
-/// Embree's milliseconds over the same rays, the faster of one and eight rays a call.
-double timeEmbree(const RayScene& truth, const RaySet& rays)
-{
-    std::vector<float> t(rays.size());
-    double best = std::numeric_limits<double>::infinity();
-    for (int width : {1, 8})
-    {
-        const auto begin = std::chrono::steady_clock::now();
-        truth.distances(rays.origins, rays.directions, width, t);
-        best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    }
-    return best;
-}
-
 Status run(const Options& options)
 {
     Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
@@ -50,7 +34,7 @@ Status run(const Options& options)
     if (!options.record.empty())
         if (auto status = saveRays(*set, options.record); !status) return status;
     const OutsideRunner embree{"embree", "all cores, robust, the faster of 1 and 8 rays a call",
-                               [&](const RaySet& rays) { return timeEmbree(*truth, rays); }};
+                               [&](const RaySet& rays) { return embreeMilliseconds(*truth, rays); }};
     return raceOnOwnDevice(*set, options.race, embree);
 }
 

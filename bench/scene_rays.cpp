@@ -1,6 +1,8 @@
 #include "bench/scene_rays.h"
 
 #include <algorithm>
+#include <chrono>
+#include <limits>
 
 #include "placement/free_space.h"
 #include "placement/random.h"
@@ -29,6 +31,19 @@ Result<RaySet> sceneRays(const Scene& scene, const RayScene& truth, uint32_t cou
     std::vector<vec3> points;
     while (points.size() < wanted) points.push_back(space->randomPoint(random));
     return glossyRays(truth, scene.cameras, points, {.count = count, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = seed});
+}
+
+double embreeMilliseconds(const RayScene& scene, const RaySet& rays)
+{
+    std::vector<float> t(rays.size());
+    double best = std::numeric_limits<double>::infinity();
+    for (int width : {1, 8})
+    {
+        const auto begin = std::chrono::steady_clock::now();
+        scene.distances(rays.origins, rays.directions, width, t);
+        best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return best;
 }
 
 } // namespace sconce
