@@ -201,10 +201,27 @@ SCONCE_FN real texelExtent(SCONCE_IN(RayState) r, uint word)
     return max(sqrt(gx * gx + gy * gy), real(2.0) / real(field.faceSize)) / max(r.q0 + r.s * r.dq, real(1e-12));
 }
 
+/// Where the ray meets the plane of the texel r.word. From the plane itself: near its start, far from the probe, a ray's t is the difference
+/// of large numbers, of which the march along s has gathered more rounding.
+SCONCE_FN real timeAtPlane(SCONCE_IN(RayState) r)
+{
+    real half_ = real(0.5) * real(field.faceSize);
+    int last = mirrorSize() - 1;
+    real u = (real(r.mirrorX != 0 ? last - r.ix : r.ix) + real(0.5)) / half_ - real(1.0);
+    real v = (real(r.mirrorY != 0 ? last - r.iy : r.iy) + real(0.5)) / half_ - real(1.0);
+    real q = halfToReal(r.word);
+    real qu = q * unpackGradient(r.word >> 16) * half_;
+    real qv = q * unpackGradient(r.word >> 24) * half_;
+    vec3 plane = vec3(qu, qv, q - u * qu - v * qv); // 1 = dot(plane, (U, V, W)) on it
+    real along = dot(plane, mapCoordinates(r.face, r.direction));
+    real t = (real(1.0) - dot(plane, mapCoordinates(r.face, r.relative))) / (abs(along) > real(1e-12) ? along : real(1e-12));
+    return min(max(t, r.ta), r.tb);
+}
+
 SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
 {
     rememberSurfel(r, s);
-    r.t = max(r.t, timeAt(r, s));
+    r.t = max(r.t, r.event == kEventCrossing ? timeAtPlane(r) : timeAt(r, s));
     r.status = kHit;
     r.phase = kPhaseDone;
     if (r.opinionT == real(-1.0) && r.handoffs <= quality.maxHandoffs && quality.opinion > real(0.0) &&
