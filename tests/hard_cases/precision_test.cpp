@@ -36,12 +36,13 @@ TEST_P(Precision, FloatAnswersLikeDouble)
         status += a.status != b.status;
         if (a.status != b.status) continue;
         far += a.status == TraceStatus::hit && std::abs(double(a.t) - t) > 1e-4 * t; // of an unknown, t is only the last point reached
-        other += std::abs(double(a.t) - t) > 1e-5 * double(set.diagonal);
+        // Positions in the scene are rounded to 6e-8 of its size before a ray starts, and grazing surfaces stretch that tenfold.
+        other += std::abs(double(a.t) - t) > 1e-4 * t + 1e-6 * double(set.diagonal);
     }
     const std::string name = std::string("float against double, ") + GetParam();
     expectAtMost(name + ": share of another status", set.size(), double(status) / kRays, 0.0005);
-    expectAtMost(name + ": share with t off by over 1e-4", set.size(), double(far) / kRays, 0.0015, 0.0);
-    expectAtMost(name + ": share with t off by over 1e-5 of the diagonal", set.size(), double(other) / kRays, 0.0005);
+    expectAtMost(name + ": share with t off by over 1e-4", set.size(), double(far) / kRays, 0.0015, 0.0005);
+    expectAtMost(name + ": share with t off by over 1e-4 and 1e-6 of the diagonal", set.size(), double(other) / kRays, 0.0005);
     expectAtMost(name + ": rays stopped by the limit, in both", 2 * set.size(), double(single.limitReached + oracle.limitReached), 0.0);
     expectAtMost(name + ": t falls outside a second opinion, in both", 2 * set.size(),
                  double(single.fallsOutsideOpinions + oracle.fallsOutsideOpinions), 0.0);
