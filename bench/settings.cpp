@@ -79,6 +79,7 @@ std::vector<Knob> makeKnobs()
         knob("opinion", trace, ours, {"0", "0.001", "0.002", "0.01"}, "diagonals", SCONCE_FIELD(quality.trace.opinion)),
         knob("far bounds", trace, ours, {"0", "1"}, "", SCONCE_FIELD(quality.trace.farBounds)),
         knob("rays", frame, placed, {"1", "2", "4", "8"}, "rays a pixel", SCONCE_FIELD(frame.glossyRays)),
+        knob("trace every", frame, placed, {"1", "2", "4", "8", "16"}, "pixels", SCONCE_FIELD(frame.traceEvery)),
         knob("area samples", frame, placed, {"2", "8", "32"}, "samples", SCONCE_FIELD(frame.areaSamples)),
         knob("denoise", frame, placed, {"on", "off"}, "", SCONCE_FIELD(frame.effects.denoise)),
         knob("temporal", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.temporal)),

@@ -1,8 +1,11 @@
 #include "runtime/indirect_light.h"
 
+#include <bit>
+
 #include "runtime/environment_brdf.h"
 #include "runtime/nan_scan.h"
 #include "spirv/gather_light_comp.h"
+#include "spirv/reconstruct_comp.h"
 #include "spirv/trace_glossy_comp.h"
 
 namespace sconce
@@ -19,6 +22,8 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
     if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
         return "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) + " is outside 1.." + std::to_string(most) +
                " pixels a side";
+    if (desc.traceEvery < 1 || desc.traceEvery > 16 || !std::has_single_bit(desc.traceEvery))
+        return "one traced pixel of " + std::to_string(desc.traceEvery) + " must be of 1, 2, 4, 8 or 16";
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
     const bool rays = desc.effects.glossy || desc.effects.mirror || (desc.effects.diffuse && desc.effects.tracedDiffuse);
@@ -83,7 +88,14 @@ Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeli
     if (counts && !countImage)
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
-    return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts}, {term, counts ? 1u : 0u});
+    return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts},
+                    {term, counts ? 1u : 0u, term == gpu::kTermMirror ? 0u : uint32_t(std::countr_zero(desc.traceEvery))});
+}
+
+Status IndirectLight::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
+{
+    if (desc.traceEvery == 1) return success();
+    return makePass(pipeline, set, reconstruct_comp, {&image, &image}, {term, 0u, uint32_t(std::countr_zero(desc.traceEvery))});
 }
 
 Status IndirectLight::makeGather()
@@ -126,11 +138,15 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
     if (made.gathersDiffuse() || effects.rough)
         if (auto s = made.makeGather(); !s) return s.error();
     if (effects.diffuse && effects.tracedDiffuse)
+    {
         if (auto s = made.makeTrace(gpu::kTermDiffuse, made.diffuseImage, made.diffusePass, made.diffuseSet); !s) return s.error();
+        if (auto s = made.makeFill(gpu::kTermDiffuse, made.diffuseImage, made.diffuseFill, made.diffuseFillSet); !s) return s.error();
+    }
     if (effects.mirror)
         if (auto s = made.makeTrace(gpu::kTermMirror, made.mirrorImage, made.mirrorPass, made.mirrorSet); !s) return s.error();
     if (!effects.glossy) return made;
     if (auto s = made.makeTrace(gpu::kTermGlossy, made.glossyImage, made.glossyPass, made.glossySet); !s) return s.error();
+    if (auto s = made.makeFill(gpu::kTermGlossy, made.glossyImage, made.glossyFill, made.glossyFillSet); !s) return s.error();
     if (!effects.denoise) return made;
     if (auto s = made.makeImage(made.scratch, kLightFormat, "scratch of the glossy filter"); !s) return s.error();
     auto denoiser = Denoiser::create(gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, made.tiles(), desc.width, desc.height},
@@ -142,8 +158,12 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
 
 void IndirectLight::setInputs(const FrameInputs& inputs)
 {
-    for (const auto& [pass, set] :
-         {std::pair{&glossyPass, &glossySet}, {&mirrorPass, &mirrorSet}, {&diffusePass, &diffuseSet}, {&gatherPass, &gatherSet}})
+    for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet},
+                                    {&mirrorPass, &mirrorSet},
+                                    {&diffusePass, &diffuseSet},
+                                    {&gatherPass, &gatherSet},
+                                    {&glossyFill, &glossyFillSet},
+                                    {&diffuseFill, &diffuseFillSet}})
         if (*pass) writeInputs(*set, inputs);
     if (tileList) tileList->setInputs(inputs);
     if (denoiser) denoiser.setInputs(inputs);
@@ -196,6 +216,15 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     pass(mirrorPass, mirrorSet, gpu::kTermMirror, "mirror trace");
     scan("mirror trace", {&mirrorImage});
+    if (glossyFill || diffuseFill)
+    {
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        pass(diffuseFill, diffuseFillSet, gpu::kTermDiffuse, "diffuse fill");
+        scan("diffuse fill", {&diffuseImage});
+        pass(glossyFill, glossyFillSet, gpu::kTermGlossy, "glossy fill");
+        scan("glossy fill", {&glossyImage});
+    }
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field->descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

@@ -19,6 +19,8 @@ public:
     {
         uint32_t width = 0, height = 0; // pixels, 1..16384
         IndirectEffects effects;
+        uint32_t traceEvery = 1; // trace one pixel of 1, 2, 4, 8 or 16, of reflections and of traced diffuse light, and make the rest from
+                                 // it: shaders/reconstruct.comp. Mirrors are traced at every pixel
         bool counts = false; // write what each pixel's ray cost: an image of 16 bytes a pixel
         Spirv glossyShader;  // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
     };
@@ -29,8 +31,8 @@ public:
     void setInputs(const FrameInputs& inputs);
     /// Record frames in the order in which they are shown, where the effect `temporal` is on. Ends with the barrier that lets any later
     /// stage read the outputs (layout GENERAL).
-    /// @param timer  optional; scopes "classify tiles", "gather light", "diffuse trace", "glossy trace", "mirror trace",
-    ///               "glossy denoise"
+    /// @param timer  optional; scopes "classify tiles", "gather light", "diffuse trace", "glossy trace", "mirror trace", "diffuse fill",
+    ///               "glossy fill", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // Outputs, RGBA32F; empty when the effect is off. An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf)
@@ -54,6 +56,7 @@ private:
     Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
                     std::initializer_list<uint32_t> constants);
     Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
+    Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
     bool gathersDiffuse() const { return desc.effects.diffuse && !desc.effects.tracedDiffuse; }
     uint32_t gatherList() const // of the tiles that the gathering pass runs on
@@ -66,8 +69,8 @@ private:
     Buffer frame, brdfTable;
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep
-    DescriptorSet glossySet, mirrorSet, diffuseSet, gatherSet;
-    Pipeline glossyPass, mirrorPass, diffusePass, gatherPass;
+    DescriptorSet glossySet, mirrorSet, diffuseSet, gatherSet, glossyFillSet, diffuseFillSet;
+    Pipeline glossyPass, mirrorPass, diffusePass, gatherPass, glossyFill, diffuseFill;
     Denoiser denoiser;
 };
 

@@ -98,8 +98,8 @@ Status SceneRenderer::make()
 {
     const IndirectEffects& effects = settings.effects;
     const bool rays = effects.glossy || effects.mirror;
-    auto light =
-        IndirectLight::create(gpu, field, {settings.width, settings.height, effects, settings.layers && rays, settings.glossyShader});
+    auto light = IndirectLight::create(
+        gpu, field, {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays, settings.glossyShader});
     if (!light) return light.error();
     indirect.emplace(std::move(*light));
 

@@ -14,6 +14,7 @@ struct RenderSettings
 {
     uint32_t width = 960, height = 540; // pixels, 1..16384
     uint32_t glossyRays = 1;            // rays a pixel, 1..256; time of the trace grows in proportion
+    uint32_t traceEvery = 1;            // as in IndirectLight::Desc
     IndirectEffects effects;
     bool layers = true;                // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
     float raysBelow = gpu::kRaysBelow; // [0,1] roughness: reflections below it are traced, above it read from prefiltered radiance

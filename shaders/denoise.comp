@@ -20,7 +20,6 @@ layout(scalar, push_constant) uniform Push
     int followRoughness; // 1: the reach shrinks with roughness, to nothing for a mirror
 };
 
-const float kReach = 15.0; // pixels, of all steps together
 const float kHat[2] = float[](1.0 / 2.0, 1.0 / 4.0);
 
 void main()
@@ -30,8 +29,8 @@ void main()
     Pixel p = readPixel(at);
     if (isNotOf(kTerm, termsOf(p))) return;
     vec4 own = imageLoad(noisy, at);
-    float reach = kReach * inversesqrt(float(frame.glossyRays)); // as the noise falls
-    if (followRoughness != 0) reach *= clamp(2.5 * p.brdf.roughness - 0.05, 0.0, 1.0);
+    float reach = followRoughness != 0 ? filterReach(p.brdf.roughness) : kFilterReach;
+    reach *= inversesqrt(float(frame.glossyRays)); // as the noise falls
     if (kBlended) reach = max(reach * inversesqrt(max(own.a, 1.0)), min(reach, 2.0));
     if (!p.surface || reach < float(stride))
     {
@@ -40,7 +39,6 @@ void main()
     }
     vec3 sum = vec3(0.0);
     float weights = 0.0;
-    float toEye = distance(p.position, frame.eye);
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
         {
@@ -49,12 +47,10 @@ void main()
                 any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
             Pixel q = readPixel(tap);
             if ((termsOf(q) & (1u << kTerm)) == 0u) continue;
-            float plane = abs(dot(q.position - p.position, p.normal)) / (0.01 * toEye);
-            float facing = max(dot(p.normal, q.normal), 0.0);
-            float rough = abs(p.brdf.roughness - q.brdf.roughness) * 8.0;
-            float weight = kHat[abs(dx)] * kHat[abs(dy)] * exp(-plane * plane - rough * rough) * pow(facing, 32.0);
-            sum += weight * imageLoad(noisy, tap).rgb;
+            float weight = kHat[abs(dx)] * kHat[abs(dy)] * likeness(p, q);
+            sum += weight * imageLoad(noisy, tap).rgb / (kTerm == kTermGlossy ? tintOf(q) : vec3(1.0));
             weights += weight;
         }
+    if (kTerm == kTermGlossy) sum *= tintOf(p);
     imageStore(smooth_, at, vec4(weights > 0.0 ? sum / weights : own.rgb, own.a));
 }

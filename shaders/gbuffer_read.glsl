@@ -38,3 +38,17 @@ Pixel readPixel(ivec2 at)
     p.brdf.roughness = normal.w;
     return p;
 }
+
+/// How much two pixels show the same surface, [0,1]: 0 across edges of depth, of the shading normal and of roughness.
+float likeness(Pixel p, Pixel q)
+{
+    float plane = dot(q.position - p.position, p.normal) / (0.01 * distance(p.position, frame.eye));
+    float rough = (p.brdf.roughness - q.brdf.roughness) * 8.0;
+    return exp(-plane * plane - rough * rough) * pow(max(dot(p.normal, q.normal), 0.0), 32.0);
+}
+
+/// Pixels that the filter of reflections reaches: as far as their lobe blurs.
+float filterReach(float roughness) { return kFilterReach * clamp(2.5 * roughness - 0.05, 0.0, 1.0); }
+
+/// What a surface makes of white light that comes along its reflection: what a filter divides by, to leave its texture alone.
+vec3 tintOf(Pixel p) { return max(fresnelSchlick(reflectanceAtNormal(p.brdf), dot(p.normal, p.view)), vec3(1e-3)); }

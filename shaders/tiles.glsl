@@ -9,20 +9,31 @@ layout(scalar, set = 1, binding = 8) readonly buffer SconceTiles
     uint tiles[]; // [list][as many as the picture has]: x | y << 16
 };
 
+uint tileCount(uint list)
+{
+    uvec2 all = (frame.size + kTileSide - 1u) / kTileSide;
+    return kTiled ? runs[list].count : all.x * all.y;
+}
+
+/// @param index  0..tileCount(list)-1
+/// @return  its first pixel
+ivec2 tileOrigin(uint list, uint index)
+{
+    uvec2 all = (frame.size + kTileSide - 1u) / kTileSide;
+    if (!kTiled) return int(kTileSide) * ivec2(index % all.x, index / all.x);
+    uint tile = tiles[list * all.x * all.y + index];
+    return int(kTileSide) * ivec2(tile & 0xffffu, tile >> 16);
+}
+
+uint workgroupIndex() { return gl_WorkGroupID.y * (kTiled ? kTileRow : gl_NumWorkGroups.x) + gl_WorkGroupID.x; }
+
 /// Dispatch: the list's TileRuns, or ceil(width/8) x ceil(height/8).
 /// @return  whether there is a pixel to work on
 bool findPixel(uint list, out ivec2 at)
 {
-    uvec2 origin = kTileSide * gl_WorkGroupID.xy;
-    if (kTiled)
-    {
-        uint index = gl_WorkGroupID.y * kTileRow + gl_WorkGroupID.x;
-        if (index >= runs[list].count) return false;
-        uvec2 all = (frame.size + kTileSide - 1u) / kTileSide;
-        uint tile = tiles[list * all.x * all.y + index];
-        origin = kTileSide * uvec2(tile & 0xffffu, tile >> 16);
-    }
-    at = ivec2(origin + gl_LocalInvocationID.xy);
+    uint index = workgroupIndex();
+    if (index >= tileCount(list)) return false;
+    at = tileOrigin(list, index) + ivec2(gl_LocalInvocationID.xy);
     return all(lessThan(at, ivec2(frame.size)));
 }
 

@@ -4,22 +4,22 @@
 #include "gbuffer_read.glsl"
 #define SCONCE_TILE_CONSTANT 2
 #include "tiles.glsl"
+#include "sparse.glsl"
 
 // Light by traced rays. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray; kTermDiffuse: cosine-weighted rays, whose
-// mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel.
+// mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel; of each 2^kEveryLog
+// tiles one workgroup finds the pixels to trace, and its invocations share them out, so that none idles beside a pixel that is left out.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 3) const uint kTerm = kTermGlossy;
 layout(constant_id = 4) const bool kCount = true; // write the counts
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
 layout(set = 1, binding = 5, rgba32ui) writeonly uniform uimage2D counts;  // probe of the last ray, hand-offs, reads, unknown rays
 
-void main()
+shared uint chosenCount;
+shared uint chosen[64u << kEveryLog]; // x | y << 16
+
+void trace(ivec2 at, Pixel p, uint terms)
 {
-    ivec2 at;
-    if (!findPixel(kTerm, at)) return;
-    Pixel p = readPixel(at);
-    uint terms = termsOf(p);
-    if (!p.surface || isNotOf(kTerm, terms)) return;
     vec4 result = vec4(0.0);
     if (kTerm == kTermDiffuse)
     {
@@ -57,4 +57,43 @@ void main()
     }
     imageStore(reflected, at, result / float(rays));
     if (kCount && (terms & (1u << kTerm)) != 0u) imageStore(counts, at, count);
+}
+
+void traceChosen()
+{
+    if (gl_LocalInvocationIndex == 0u) chosenCount = 0u;
+    barrier();
+    uint first = workgroupIndex() << kEveryLog, last = min(first + (1u << kEveryLog), tileCount(kTerm));
+    for (uint tile = first; tile < last; ++tile)
+    {
+        ivec2 at = tileOrigin(kTerm, tile) + ivec2(gl_LocalInvocationID.xy);
+        if (any(greaterThanEqual(at, ivec2(frame.size)))) continue;
+        Pixel p = readPixel(at);
+        if ((termsOf(p) & (1u << kTerm)) == 0u) continue;
+        if (isTraced(p, at, kTerm))
+            chosen[atomicAdd(chosenCount, 1u)] = uint(at.x) | (uint(at.y) << 16);
+        else
+            imageStore(reflected, at, vec4(0.0, 0.0, 0.0, kNotTraced));
+    }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < chosenCount; i += 64u)
+    {
+        ivec2 at = ivec2(chosen[i] & 0xffffu, chosen[i] >> 16);
+        Pixel p = readPixel(at);
+        trace(at, p, termsOf(p));
+    }
+}
+
+void main()
+{
+    if (kEveryLog > 0u)
+    {
+        traceChosen();
+        return;
+    }
+    ivec2 at;
+    if (!findPixel(kTerm, at)) return;
+    Pixel p = readPixel(at);
+    uint terms = termsOf(p);
+    if (p.surface && !isNotOf(kTerm, terms)) trace(at, p, terms);
 }

@@ -33,6 +33,7 @@ struct RenderOptions
     uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
     std::optional<float> roughness;
     float raysBelow = gpu::kRaysBelow;
+    uint32_t traceEvery = 1;
     bool noDenoise = false, temporal = false;
     std::string diffuse = "irradiance";
 };
@@ -160,6 +161,7 @@ int runRender(const RenderOptions& options, const Context& context)
     settings.effects.temporal = options.temporal;
     settings.effects.tracedDiffuse = options.diffuse == "traced";
     settings.raysBelow = options.raysBelow;
+    settings.traceEvery = options.traceEvery;
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
@@ -264,6 +266,13 @@ void addRenderCommand(CLI::App& app, Context& context)
                      "square root, "
                      "time grows in proportion (default: 1; range: 1 to 64)")
         ->check(unlisted(CLI::Range(1u, 64u)))
+        ->type_name("N");
+    command
+        ->add_option(
+            "--trace-every", options->traceEvery,
+            "Traces one pixel of 1, 2, 4, 8 or 16 and makes the others from those about them that show the same surface; mirrors and "
+            "sharp reflections are traced at every pixel (default: 1)")
+        ->check(unlisted(CLI::IsMember({1u, 2u, 4u, 8u, 16u})))
         ->type_name("N");
     command->add_flag("--no-denoise", options->noDenoise, "Leaves the glossy term unfiltered (default: filtered)");
     command->add_flag("--temporal", options->temporal,

@@ -33,6 +33,9 @@ const uint kTermCount = 4u;
 const uint kListGathered = 4u; // tiles of the diffuse or of the rough term, which one pass makes together
 const uint kListCount = 5u;
 
+const float kFilterReach = 15.0f; // pixels, of all steps of a term's filter together
+const float kNotTraced = -1.0f;   // in place of a ray's length: the pixel is made from its neighbours
+
 const uint kTileSide = 8u;      // pixels; a workgroup
 const uint kTileRow = 128u;     // tiles a row of an indirect dispatch has
 
