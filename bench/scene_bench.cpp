@@ -295,13 +295,17 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
     if (settings.pathTraced()) return live;
     auto field = fieldFor(settings, live.fieldCost, progress);
     if (!field) return field.error();
-    auto tracer = TracedMethod::create(
-        gpu, std::move(*field), {.opponent = settings.opponent(), .quality = settings.quality, .lowFactor = settings.lowFactor}, point.id);
+    auto tracer = TracedMethod::create(gpu, std::move(*field),
+                                       {.opponent = settings.opponent(),
+                                        .quality = settings.quality,
+                                        .distanceBits = settings.distanceBits,
+                                        .lowFactor = settings.lowFactor},
+                                       point.id);
     if (!tracer) return tracer.error();
     live.tracer = std::move(*tracer);
     const gpu::LightFieldInfo& info = live.tracer->data().info;
     live.fieldCost["probes"] = info.probeCount;
-    live.fieldCost["bytes"] = bytesJson(bytesByPart(live.tracer->data()));
+    live.fieldCost["bytes"] = bytesJson(live.tracer->bytes());
     RenderSettings frame = settings.frame;
     frame.width = desc.settings.width;
     frame.height = desc.settings.height;

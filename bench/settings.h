@@ -30,6 +30,7 @@ struct PointSettings
     uint32_t bounces = 2;
     int octreeVoxels = 0;   // OctreeSettings::voxels
     uint32_t lowFactor = 0; // of an opponent; 0: bestLowFactor
+    int distanceBits = 32;  // of a texel of ours (bench/distance_format.h)
     Quality quality;        // of our tracer
     RenderSettings frame;
     uint32_t paths = 1; // a pixel, of the path tracer

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <variant>
 
+#include "bench/distance_format.h"
 #include "bench/octahedral_field.h"
 #include "bench/random.h"
 #include "runtime/face_chain_text.h"
@@ -40,7 +41,7 @@ Status setKnobs(Tracer& how, const std::string& knobs)
         {"startLevel", &quality.startLevel}, {"coarsestLevel", &quality.coarsestLevel},
         {"tolerance", &quality.tolerance},   {"epsilon", &quality.epsilon},
         {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds},
-        {"octahedral", &octahedral}};
+        {"octahedral", &octahedral},         {"distanceBits", &how.distanceBits}};
     std::istringstream list(knobs);
     for (std::string knob; std::getline(list, knob, ',');)
     {
@@ -50,7 +51,7 @@ Status setKnobs(Tracer& how, const std::string& knobs)
         if (found == std::end(known))
             return Error{ErrorCode::badArgument, "'" + std::string(name) +
                                                      "' is no knob of the tracer; give ranked, maxHandoffs, startLevel, "
-                                                     "coarsestLevel, tolerance, epsilon, opinion, farBounds or octahedral"};
+                                                     "coarsestLevel, tolerance, epsilon, opinion, farBounds, octahedral or distanceBits"};
         const char* begin = knob.data() + std::min(colon + 1, knob.size());
         const char* end = knob.data() + knob.size();
         const auto read = std::visit([&](auto* value) { return std::from_chars(begin, end, *value); }, found->second);
@@ -125,8 +126,11 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData f
     Result<FieldData> data = std::move(field);
     if (how.opponent)
         data = baselineField(std::move(*data), *how.opponent, how.lowFactor);
-    else if (how.octahedral != 0)
-        data = octahedralField(*data, how.octahedral);
+    else
+    {
+        data = narrowedField(std::move(*data), how.distanceBits);
+        if (data && how.octahedral != 0) data = octahedralField(*data, how.octahedral);
+    }
     if (!data) return data.error();
     made->field = std::move(*data);
     auto onDevice = LightField::create(gpu, made->field, how.quality);
@@ -168,7 +172,15 @@ double TracedMethod::traceMebibytes() const
     uint32_t words = field.info.wordsPerProbe;
     if (!how.opponent && how.quality.trace.farBounds == 0) // they are there, and not read
         words = (how.octahedral != 0 ? 1 : 6) * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
-    return double(words) * sizeof(uint32_t) / kMebibyte;
+    const double saved = how.opponent ? 0.0 : double(bytesSaved(field, how.distanceBits)) / double(field.info.probeCount);
+    return (double(words) * sizeof(uint32_t) - saved) / kMebibyte;
+}
+
+FieldBytes TracedMethod::bytes() const
+{
+    FieldBytes bytes = bytesByPart(field);
+    if (!how.opponent) bytes.distance -= bytesSaved(field, how.distanceBits);
+    return bytes;
 }
 
 double TracedMethod::radianceMebibytes() const

@@ -31,6 +31,7 @@ struct Tracer
     std::optional<Baseline> opponent; // none: ours
     Quality quality;                  // of ours
     uint32_t octahedral = 0;          // of ours: texels a side of octahedral maps to trace instead of the cube faces, 0: the faces
+    int distanceBits = 32;            // of ours: bits of a texel (bench/distance_format.h)
     uint32_t lowFactor = 0;           // of an opponent, texels; 0: bestLowFactor
 };
 
@@ -41,9 +42,9 @@ public:
     /// @param label  what the row is called
     static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, FieldData field, const Tracer& tracer, std::string label);
     /// @param what  FILE.sconce, or TRACER=FILE.sconce with `ours`, which knobs of TraceQuality may follow (ours/ranked:2,opinion:0=F) and
-    ///              octahedral:N, for maps of N texels a side made from the cube faces, or an opponent's name, which a low factor in texels
-    ///              may follow (b0plus/8=grid.sconce). Without a name: b0plus for octahedral maps on a grid, b0plus-octree for others, else
-    ///              ours.
+    ///              octahedral:N, for maps of N texels a side made from the cube faces, distanceBits:N, for texels of N bits, or an
+    ///              opponent's name, which a low factor in texels may follow (b0plus/8=grid.sconce). Without a name: b0plus for octahedral
+    ///              maps on a grid, b0plus-octree for others, else ours.
     static Result<std::unique_ptr<TracedMethod>> create(Gpu& gpu, const std::string& what);
 
     const std::string& name() const { return label; }
@@ -53,6 +54,7 @@ public:
     const LightField& lightField() const { return *onDevice; }
     double traceMebibytes() const;    // a probe, of everything the trace reads but the index
     double radianceMebibytes() const; // a probe
+    FieldBytes bytes() const;         // of the whole field, as the tracer would keep it
 
     std::vector<gpu::Ray> raysOf(const RaySet& set) const; // off their surface as the tracer wants them
     Status trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) { return tracer->trace(rays, hits); }
