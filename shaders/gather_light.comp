@@ -44,7 +44,7 @@ void main()
 
     // The weight of a probe doesn't depend on the look-up that named it: each is asked once, and counted as often as it was named.
     uint named[kLookUps * kRanked];
-    float times[kLookUps * kRanked];
+    float times[kLookUps * kRanked]; // and then their weights
     uint count = 0u;
     for (uint i = 0u; i < kLookUps; ++i)
     {
@@ -62,12 +62,25 @@ void main()
             times[found] += 1.0;
         }
     }
-    GatheredLight light = noLight();
-    if (canGather(point, p.normal))
-        for (uint i = 0u; i < count; ++i) gatherProbe(named[i], point, p.normal, lobe, times[i], wantDiffuse, wantRough, light);
-    float weight = max(light.weight, 1e-30);
-    if (wantDiffuse) imageStore(diffuse, at, vec4(light.diffuse / weight, 1.0));
+    if (!canGather(point, p.normal)) count = 0u;
+    vec3 arriving = vec3(0.0);
+    float weights = 1e-30, met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there
+    for (uint i = 0u; i < count; ++i)
+    {
+        times[i] *= weightOfProbe(named[i], point, p.normal);
+        weights += times[i];
+        if (wantDiffuse) arriving += times[i] * probeIrradiance(named[i], p.normal);
+        float seen = wantRough ? seenAlong(named[i], point - probeHeader(named[i]).centre, lobe.direction) : 0.0;
+        if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+    }
+    if (wantDiffuse) imageStore(diffuse, at, vec4(arriving / weights, 1.0));
     if (!wantRough) return;
+    vec3 inLobe = vec3(0.0);
+    for (uint i = 0u; i < count; ++i)
+    {
+        vec3 fromProbe = point - probeHeader(named[i]).centre;
+        inLobe += times[i] * lobeRadiance(named[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(named[i], fromProbe, lobe.direction));
+    }
     vec2 share = reflectedShare(dot(p.normal, p.view), alpha);
-    imageStore(rough, at, vec4(light.lobe / weight * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));
+    imageStore(rough, at, vec4(inLobe / weights * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));
 }
