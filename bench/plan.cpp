@@ -121,6 +121,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         for (const double factor : opponents()[i].curve)
             planner.addVaried(theirs[i], *findKnob("resolution"), std::to_string(uint32_t(theirs[i].resolution * factor)));
         planner.addVaried(theirs[i], *findKnob("rays"), "4");
+        planner.addVaried(theirs[i], *findKnob("trace every"), "4"); // any tracer gains by it
     }
     return std::move(planner.points);
 }

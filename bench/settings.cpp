@@ -71,7 +71,7 @@ std::vector<Knob> makeKnobs()
         knob("bounces", bake, lit, {"0", "1", "2", "4"}, "bounces", SCONCE_FIELD(bounces)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, "voxels", SCONCE_FIELD(octreeVoxels)),
         knob("low factor", trace, opponents, {}, "texels", SCONCE_FIELD(lowFactor)),
-        knob("distance bits", trace, ours, {"12", "16", "20", "24", "32"}, "bits a texel", SCONCE_FIELD(distanceBits)),
+        knob("distance bits", trace, ours, {"16", "24", "32"}, "bits a texel", SCONCE_FIELD(distanceBits)),
         knob("ranked", trace, ours, {"1", "2", "3", "4"}, "probes", SCONCE_FIELD(quality.trace.ranked)),
         knob("hand-offs", trace, ours, {"0", "2", "8", "24", "64"}, "hand-offs", SCONCE_FIELD(quality.trace.maxHandoffs)),
         knob("start level", trace, ours, {"0", "2", "4", "6"}, "level", SCONCE_FIELD(quality.trace.startLevel)),

@@ -23,6 +23,8 @@ namespace
 const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_indirect", "glossy_indirect", "depth",  "normal", "albedo",
                                                "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
 
+constexpr const char *kIrradiance = "irradiance", *kTraced = "traced"; // of --diffuse
+
 struct RenderOptions
 {
     SceneOptions scene;
@@ -35,8 +37,32 @@ struct RenderOptions
     float raysBelow = gpu::kRaysBelow;
     uint32_t traceEvery = 1;
     bool noDenoise = false, temporal = false;
-    std::string diffuse = "irradiance";
+    std::string diffuse = kIrradiance;
 };
+
+/// What --quality says and the command line doesn't.
+Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tracer)
+{
+    settings.glossyRays = options.samples;
+    settings.areaSamples *= options.samples;
+    const Result<std::optional<PointSettings>> quality = options.quality.load();
+    if (!quality) return quality.error();
+    if (*quality)
+    {
+        const RenderSettings& frame = (*quality)->frame;
+        tracer = (*quality)->quality;
+        options.quality.take("--samples", settings.glossyRays, frame.glossyRays);
+        options.quality.take("--samples", settings.areaSamples, frame.areaSamples);
+        options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
+        options.quality.take("--temporal", options.temporal, frame.effects.temporal);
+        options.quality.take("--diffuse", options.diffuse, std::string(frame.effects.tracedDiffuse ? kTraced : kIrradiance));
+        options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
+        options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
+    }
+    settings.raysBelow = options.raysBelow;
+    settings.traceEvery = options.traceEvery;
+    return success();
+}
 
 /// The plan for the scene as it is drawn: with --roughness every surface has that.
 Result<EffectPlan> choosePlan(const RenderOptions& options, const Scene& scene)
@@ -112,9 +138,12 @@ double median(std::vector<double> values)
     return values.empty() ? 0.0 : 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
-int runRender(const RenderOptions& options, const Context& context)
+int runRender(RenderOptions options, const Context& context)
 {
     const Stopwatch watch;
+    RenderSettings settings;
+    Quality tracer;
+    if (const Status taken = takeQuality(options, settings, tracer); !taken) return fail(taken.error());
     if (const std::string problem = options.pictures.problem(kFrameLayers); !problem.empty()) return fail(ErrorCode::badArgument, problem);
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
@@ -140,28 +169,14 @@ int runRender(const RenderOptions& options, const Context& context)
     if (!gpu) return fail(gpu.error());
     Result<DeviceScene> deviceScene = DeviceScene::create(**gpu, *scene, data->info, {}, consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
-    const Result<std::optional<PointSettings>> quality = options.quality.load();
-    if (!quality) return fail(quality.error());
-    Result<LightField> field = LightField::create(**gpu, *data, *quality ? (*quality)->quality : Quality());
+    Result<LightField> field = LightField::create(**gpu, *data, tracer);
     if (!field) return fail(field.error());
-    RenderSettings settings;
     settings.width = options.width;
     settings.height = options.height;
-    settings.glossyRays = options.samples;
-    settings.areaSamples *= options.samples;
-    bool denoise = !options.noDenoise;
-    if (*quality)
-    {
-        options.quality.take("--samples", settings.glossyRays, (*quality)->frame.glossyRays);
-        options.quality.take("--samples", settings.areaSamples, (*quality)->frame.areaSamples);
-        options.quality.take("--no-denoise", denoise, (*quality)->frame.effects.denoise);
-    }
     settings.effects = plan->indirect();
-    settings.effects.denoise = settings.effects.denoise && denoise;
+    settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
-    settings.effects.tracedDiffuse = options.diffuse == "traced";
-    settings.raysBelow = options.raysBelow;
-    settings.traceEvery = options.traceEvery;
+    settings.effects.tracedDiffuse = options.diffuse == kTraced;
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
@@ -208,6 +223,10 @@ int runRender(const RenderOptions& options, const Context& context)
         if (!effect.givenUp.empty()) json["given_up"][effect.name] = effect.givenUp;
     json["device_bytes"] = (*renderer)->deviceBytes();
     json["samples"] = settings.glossyRays;
+    json["trace_every"] = settings.traceEvery;
+    json["rays_below"] = settings.raysBelow;
+    json["diffuse"] = options.diffuse;
+    json["temporal"] = settings.effects.temporal;
     json["frames"] = options.frames;
     json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
     json["passes_ms"] = Json::object();
@@ -257,7 +276,7 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->add_option("--diffuse", options->diffuse,
                      "irradiance: diffuse light from prefiltered irradiance, emitters and sky from shadowed samples; traced: all of it by "
                      "--samples cosine-weighted rays a pixel, filtered (default: irradiance)")
-        ->check(unlisted(CLI::IsMember({"irradiance", "traced"})))
+        ->check(unlisted(CLI::IsMember({kIrradiance, kTraced})))
         ->type_name("irradiance|traced");
     addTracer(command, options->tracer);
     command

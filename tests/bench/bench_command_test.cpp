@@ -153,15 +153,25 @@ TEST(QualityOption, SetsWhatTheCommandLineDoesNotSay)
     const json baked = json::parse(bake.out);
     EXPECT_EQ(baked["resolution"], 128); // the level's
     EXPECT_EQ(baked["bounces"], 0);      // the line's
-    const auto samples = [&](std::vector<std::string> options)
+    const auto drawn = [&](std::vector<std::string> options)
     {
         options.insert(options.begin(), {"render", "cornell", "--field", field, "--size", "32x18", "-o", folder / "x.exr", "--json"});
         const CommandResult render = sconceCommand(options);
         EXPECT_EQ(render.exit, 0) << render.err;
-        return json::parse(render.out)["samples"].get<int>();
+        return json::parse(render.out);
     };
-    EXPECT_EQ(samples({}), 1);
-    EXPECT_EQ(samples({"--quality", "high"}), 2);
-    EXPECT_EQ(samples({"--quality", "high", "--samples", "1"}), 1);
+    EXPECT_EQ(drawn({})["samples"], 1);
+    EXPECT_EQ(drawn({"--quality", "high"})["samples"], 2);
+    EXPECT_EQ(drawn({"--quality", "high", "--samples", "1"})["samples"], 1);
+
+    const json tuned = {{"trace every", 8}, {"rays below", 0.9}, {"temporal", "on"}, {"traced diffuse", "on"}, {"denoise", "off"}};
+    writeText(folder / "tuned.json", json{{"quality", 1}, {"settings", tuned}}.dump());
+    const json all = drawn({"--quality", folder / "tuned.json"});
+    EXPECT_EQ(all["trace_every"], 8);
+    EXPECT_FLOAT_EQ(all["rays_below"], 0.9f);
+    EXPECT_EQ(all["diffuse"], "traced");
+    EXPECT_EQ(all["temporal"], true);
+    EXPECT_EQ(all["effects"]["denoise"], false);
+    EXPECT_EQ(drawn({"--quality", folder / "tuned.json", "--trace-every", "2"})["trace_every"], 2);
     EXPECT_EQ(sconceCommand({"place", "cornell", "-o", probes, "--quality", "splendid"}).exit, 2);
 }
