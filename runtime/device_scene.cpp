@@ -34,8 +34,8 @@ Result<GpuImage> depthArray(Gpu& gpu, uint32_t size, uint32_t layers, VkFormat f
 {
     ImageDesc desc;
     desc.format = format;
-    desc.width = desc.height = layers > 0 ? size : 1; // a kind that the scene lacks still has a binding
-    desc.layers = std::max(layers, 1u);
+    desc.width = desc.height = size;
+    desc.layers = layers;
     desc.array = true;
     desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     return gpu.makeImage(desc, what);
@@ -113,6 +113,13 @@ VkSamplerCreateInfo samplerInfo(VkFilter filter, VkSamplerAddressMode wrap)
 }
 
 } // namespace
+
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects)
+{
+    DeviceSceneDesc desc;
+    if (!effects.diffuse || effects.tracedDiffuse) desc.light.emitterSamples = desc.light.skySamples = 0;
+    return desc;
+}
 
 Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu::LightFieldInfo& space, const DeviceSceneDesc& desc,
                                         const Progress& progress)
@@ -206,23 +213,42 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
     };
+    if (lightList.lights
+            .empty()) // the bindings of kinds that a scene lacks are another kind's maps, which nothing reads; these where all lack
+    {
+        auto maps = depthArray(gpu, 1, 1, VK_FORMAT_D16_UNORM, "The stand-in for shadow maps");
+        if (!maps) return maps.error();
+        noMaps = std::move(*maps);
+    }
+    const GpuImage* any = &noMaps;
+    bool formats[2] = {}; // 32 bits, 16 bits
     for (const Kind& kind : kinds)
     {
+        if (kind.layers == 0) continue;
         auto maps = depthArray(gpu, kind.size, kind.layers, kind.format, kind.what);
         if (!maps) return maps.error();
         kind.maps = std::move(*maps);
-        set.write(kind.binding, kind.maps.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kind.sampler.handle());
+        any = &kind.maps;
+        formats[kind.format == VK_FORMAT_D32_SFLOAT ? 0 : 1] = true;
     }
-    auto status = gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            for (const Kind& kind : kinds) toAttachment(cmd, kind.maps);
-        });
+    for (const Kind& kind : kinds)
+        set.write(kind.binding, (kind.maps ? kind.maps : *any).view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kind.sampler.handle());
+    const auto everyMap = [&](VkCommandBuffer cmd, const auto& to)
+    {
+        for (const Kind& kind : kinds)
+            if (kind.maps) to(cmd, kind.maps);
+        if (noMaps) to(cmd, noMaps);
+    };
+    auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); });
     if (!status) return status;
-    auto deep = DepthPipelines::create(gpu, set.layout(), VK_FORMAT_D32_SFLOAT, triangles.hasMasked());
-    if (!deep) return deep.error();
-    auto flat = DepthPipelines::create(gpu, set.layout(), VK_FORMAT_D16_UNORM, triangles.hasMasked());
-    if (!flat) return flat.error();
+    DepthPipelines pipelines[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        if (!formats[i]) continue;
+        auto made = DepthPipelines::create(gpu, set.layout(), i == 0 ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_D16_UNORM, triangles.hasMasked());
+        if (!made) return made.error();
+        pipelines[i] = std::move(*made);
+    }
     SceneDraws draws;
     for (size_t i = 0; i < lightList.lights.size(); ++i)
     {
@@ -238,16 +264,12 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
             [&](VkCommandBuffer cmd)
             {
                 for (uint32_t v = 0; v < views.size(); ++v)
-                    renderDepth(gpu, cmd, kind.format == VK_FORMAT_D32_SFLOAT ? *deep : *flat, triangles, set.handle(), kind.maps,
+                    renderDepth(gpu, cmd, pipelines[kind.format == VK_FORMAT_D32_SFLOAT ? 0 : 1], triangles, set.handle(), kind.maps,
                                 uint32_t(light.shadowLayer) + v, views[v], draws);
             });
         if (!status) return status;
     }
-    return gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            for (const Kind& kind : kinds) toSampled(cmd, kind.maps);
-        });
+    return gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toSampled); });
 }
 
 } // namespace sconce

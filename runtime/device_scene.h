@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "runtime/effect_plan.h"
 #include "runtime/lights.h"
 #include "runtime/pipeline.h"
 #include "runtime/scene_mesh.h"
@@ -16,6 +17,10 @@ struct DeviceSceneDesc
     uint32_t maxTextureSize = 1024; // texels a side, 1..4096; larger images are filtered down
     LightSettings light;
 };
+
+/// What frames with these effects need of a scene: without diffuse light, or where rays give it, no samples of emitters and sky, and so no
+/// shadow maps of them. A bake needs them always.
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects);
 
 /// A scene on the device: triangles, materials, textures, lights, and shadow maps rendered once. Move-only; destroy it after the GPU has
 /// finished with it and before its Gpu.
@@ -41,7 +46,7 @@ private:
     TextureArray color, data;
     Buffer materials, lightBuffer;
     LightList lightList;
-    GpuImage sunMaps, skyMaps, pointMaps, emitterMaps;
+    GpuImage sunMaps, skyMaps, pointMaps, emitterMaps, noMaps;
     Sampler textureSampler, smoothCompare, nearestCompare;
     DescriptorSet set;
     uint64_t bytes = 0;

@@ -167,16 +167,17 @@ int runRender(RenderOptions options, const Context& context)
     if (!device) return fail(device.error());
     Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
-    Result<DeviceScene> deviceScene = DeviceScene::create(**gpu, *scene, data->info, {}, consoleProgress(context));
-    if (!deviceScene) return fail(deviceScene.error());
-    Result<LightField> field = LightField::create(**gpu, *data, tracer);
-    if (!field) return fail(field.error());
     settings.width = options.width;
     settings.height = options.height;
     settings.effects = plan->indirect();
     settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
     settings.effects.tracedDiffuse = options.diffuse == kTraced;
+    Result<DeviceScene> deviceScene =
+        DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects), consoleProgress(context));
+    if (!deviceScene) return fail(deviceScene.error());
+    Result<LightField> field = LightField::create(**gpu, *data, tracer);
+    if (!field) return fail(field.error());
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "

@@ -119,6 +119,36 @@ TEST_F(EffectsTest, WhatIsNotCalledForHasNoPassAndNoBytes)
     EXPECT_EQ(none, (std::set<std::string>{"G-buffer", "direct light", "compose"}));
 }
 
+// Shadow maps of emitters and sky were made for frames without diffuse light, too: 192 MiB.
+TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
+{
+    const Scene scene = mixedRoom();
+    const auto field = bakeField(scene, kProbes, 64, 0);
+    ASSERT_TRUE(field) << field.error().message;
+    RenderSettings settings = settingsOf(32);
+    settings.effects.diffuse = false;
+    const auto light = LightField::create(gpu(), *field);
+    std::vector<vec3> pictures[2];
+    uint64_t bytes[2] = {};
+    for (int bare = 0; bare < 2; ++bare)
+    {
+        const auto device = DeviceScene::create(gpu(), scene, field->info, bare ? sceneForFrames(settings.effects) : DeviceSceneDesc{});
+        ASSERT_TRUE(device) << device.error().message;
+        if (bare) EXPECT_TRUE(device->lights().lights.empty());
+        bytes[bare] = device->deviceBytes();
+        auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
+        ASSERT_TRUE(renderer);
+        pictures[bare] = (*renderer)->render(scene.cameras.front())->beauty;
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+    const LightSettings maps;
+    const uint64_t emitters = uint64_t(maps.emitterSamples) * 6 * maps.emitterShadow * maps.emitterShadow * 4,
+                   sky = uint64_t(maps.skySamples) * maps.skyShadow * maps.skyShadow * 2;
+    EXPECT_GT(bytes[0] - bytes[1], emitters + sky - 1024);
+    settings.effects.diffuse = settings.effects.tracedDiffuse = true;
+    EXPECT_EQ(sceneForFrames(settings.effects).light.emitterSamples, 0u) << "rays see emitters";
+}
+
 TEST_F(EffectsTest, AnEffectWhoseMapsAreNotThereIsRefusedWithASentence)
 {
     const Scene scene = *makeBuiltinScene("cornell");
