@@ -10,16 +10,21 @@ out=${OUT:-out/sheet} size=${SIZE:-160x90} spp=${SPP:-256} scenes=${SCONCE_SCENE
 sconce=${SCONCE:-build/release/tools/sconce}
 mkdir -p "$out"
 bench/emitter_room.py 16 > "$out/room16.gltf"
+bench/emitter_room.py 4 --point > "$out/point.gltf"
+bench/emitter_room.py 4 > "$out/host.gltf" # the room without its guest: the field of the row `moving object`
+bench/emitter_room.py 4 --guest > "$out/guest.gltf"
 pictures=()
 echo "| effect | scene | of | passes, ms | relMSE | FLIP |"
 echo "|---|---|---|---|---|---|"
-# effect, scene, number of probes, layer that is judged, passes that are the effect's, options of render, options of reference
-while IFS='|' read -r effect scene count layer passes options truth; do
+# effect, scene, number of probes, layer that is judged, passes that are the effect's, options of render, options of reference, and what the
+# field was baked from where it isn't the scene
+while IFS='|' read -r effect scene count layer passes options truth baked; do
     name=$(basename "${scene%.gl*}") at=$out/${effect// /-}
-    field=$out/$name.sconce reference=$out/$name${truth// /_}
+    baked=${baked:-$scene}
+    field=$out/$(basename "${baked%.gl*}").sconce reference=$out/$name${truth// /_}
     if [[ ! -f $field ]]; then
-        "$sconce" place "$scene" --count "$count" -o "$out/$name.probes.json" --quiet > /dev/null
-        "$sconce" bake "$scene" --probes "$out/$name.probes.json" --resolution 416 --bounces 4 --effects all -o "$field" --quiet > /dev/null
+        "$sconce" place "$baked" --count "$count" -o "$field.probes.json" --quiet > /dev/null
+        "$sconce" bake "$baked" --probes "$field.probes.json" --resolution 416 --bounces 4 --effects all -o "$field" --quiet > /dev/null
     fi
     # shellcheck disable=SC2086 # options are several words
     [[ -f $reference.exr ]] || "$sconce" reference "$scene" --size "$size" --spp "$spp" --bounces 4 $truth -o "$reference.exr" --png "$reference.png" --quiet > /dev/null
@@ -43,7 +48,9 @@ glossy unfiltered|cornell-glossy|8|glossy_indirect|glossy trace|--effects glossy
 mirror|cornell|8|glossy_indirect|mirror trace|--roughness 0 --effects mirror|--roughness 0
 emitters|$out/room16.gltf|12|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
 sun|temple|16|direct|direct light|--effects none|
+punctual|$out/point.gltf|12|direct|direct light|--effects none|
 sky|temple|16|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
 curtains, leaves|$scenes/sponza/Sponza.gltf|54|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse|
+moving object|$out/guest.gltf|12|beauty|gather light,glossy trace,glossy denoise,area light,diffuse denoise|--effects auto||$out/host.gltf
 LIST
 python3 bench/sheet.py "$out/effects.png" 3 "${pictures[@]}"

@@ -54,24 +54,34 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
     {
         uint32_t triangle;
         vec3 emission;
-        double end; // of its stretch of the cumulated power
+        double area, power;
+        double share = 0.0, end = 0.0; // of the samples, and of its stretch of the cumulated shares
     };
     std::vector<Emitter> emitters;
-    double power = 0.0;
+    double power = 0.0, area = 0.0;
     for (uint32_t t = 0; t < scene.triangles.size(); ++t)
     {
         const vec3 emission = meanEmission(scene, t);
         if (emission == vec3(0.0f)) continue;
         const uvec3 corner = scene.triangles[t];
         const glm::dvec3 a(scene.positions[corner.x]), b(scene.positions[corner.y]), c(scene.positions[corner.z]);
-        const double area = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
-        power += area * luminance(emission);
-        emitters.push_back({t, emission, power});
+        const double own = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
+        emitters.push_back({t, emission, own, own * luminance(emission)});
+        power += emitters.back().power;
+        area += own;
     }
     if (!(power > 0.0)) return;
+    double shares = 0.0;
+    for (Emitter& emitter : emitters)
+    {
+        emitter.share = 0.5 * (emitter.power / power + emitter.area / area);
+        emitter.end = shares += emitter.share;
+    }
+    const size_t first = list.lights.size();
+    double carried = 0.0;
     for (uint32_t i = 0; i < count; ++i)
     {
-        const double target = power * (i + 0.5) / count;
+        const double target = shares * (i + 0.5) / count;
         const auto found = std::lower_bound(emitters.begin(), emitters.end(), target, [](const Emitter& e, double p) { return e.end < p; });
         const Emitter& emitter = found == emitters.end() ? emitters.back() : *found;
         const uvec3 corner = scene.triangles[emitter.triangle];
@@ -86,12 +96,15 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         light.position = (point - space.origin) / space.scale;
         light.direction = geometricNormal(scene, emitter.triangle);
         light.intensity = emitter.emission;
-        light.area = float(power / count / luminance(emitter.emission));
+        light.area = float(emitter.area / (count * emitter.share));
+        carried += double(light.area) * luminance(emitter.emission);
         light.shadowLayer = int(list.emitterLayers);
         list.emitterLayers += 6;
         list.lights.push_back(light);
         ++list.header.emitterCount;
     }
+    for (size_t i = first; i < list.lights.size(); ++i)
+        list.lights[i].area *= float(power / carried); // what rounding to samples took or gave
 }
 
 /// An orthographic map of the whole scene along a light's direction.

@@ -31,8 +31,9 @@ struct LightList
 };
 inline constexpr uint64_t kShadowBytes = uint64_t(128) << 20;
 
-/// Delta lights as they are. Emitters: stratified over area times mean emission, in the scene's order, so that the same scene gives the
-/// same list. Sky: a spherical Fibonacci set (Keinert et al. 2015) of equal shares. Kinds the scene lacks have no entries.
+/// Delta lights as they are. Emitters: stratified in the scene's order, so that the same scene gives the same list; half by power (area
+/// times mean emission), half by area alone, so that a dim lamp that lights a room of its own has samples beside a bright one. Sky: a
+/// spherical Fibonacci set (Keinert et al. 2015) of equal shares. Kinds the scene lacks have no entries.
 LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, const LightSettings& settings);
 
 /// The views of an entry's shadow map: one for directional lights, six faces for the others.

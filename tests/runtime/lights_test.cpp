@@ -6,6 +6,7 @@
 #include "runtime/field_space.h"
 #include "runtime/lights.h"
 #include "scene/builtin_scenes.h"
+#include "scene/mesh_builder.h"
 
 namespace sconce
 {
@@ -40,6 +41,21 @@ TEST(LightList, EmitterPatchesCarryTheScenesWholePower)
     double carried = 0.0;
     for (const gpu::GpuLight& light : list.lights) carried += double(light.area) * luminance(light.intensity);
     EXPECT_NEAR(carried, power, 1e-4 * power);
+}
+
+// Patches of equal power once left a lamp of less than a 64th of the scene's power without any: the room that it lights was black.
+TEST(LightList, ADimLampInTheNextRoomHasPatchesThatCarryItsPower)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.quad({0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, mesh.emitter("bright", vec3(30.0f)));
+    mesh.quad({5, 0, 0}, {6, 0, 0}, {6, 0, 1}, {5, 0, 1}, mesh.emitter("dim", vec3(0.1f)));
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    double bright = 0.0, dim = 0.0; // area times radiance, m^2
+    for (const gpu::GpuLight& light : buildLightList(scene, space, {}).lights)
+        (light.intensity.g > 1.0f ? bright : dim) += double(light.area) * space.scale * space.scale * light.intensity.g;
+    EXPECT_NEAR(bright, 30.0, 0.03 * 30.0);
+    EXPECT_NEAR(dim, 0.1, 0.05 * 0.1);
 }
 
 TEST(LightList, EmitterPatchesLieInsideTheLampAndAverageToItsCentre)
