@@ -83,6 +83,8 @@ void applyLevel(PointSettings& settings, const QualityLevel& level)
     settings.frame.glossyRays = level.glossyRays;
     settings.frame.areaSamples = level.areaSamples;
     settings.frame.effects.denoise = level.denoise;
+    settings.frame.raysBelow = level.raysBelow;
+    settings.frame.effects.tracedDiffuse = level.tracedDiffuse;
 }
 
 Result<PointSettings> loadQuality(const std::string& fileOrLevel)

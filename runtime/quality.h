@@ -25,7 +25,7 @@ struct Quality
 };
 
 /// A named choice of every knob but the number of probes, with what it was measured to cost (docs/bench.md). A host bakes with the first
-/// two, makes its LightField with `quality`, and draws with the rest.
+/// two (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
 struct QualityLevel
 {
     std::string_view name; // draft, low, medium, high, reference
@@ -35,8 +35,10 @@ struct QualityLevel
     uint32_t glossyRays;   // a pixel
     uint32_t areaSamples;  // a pixel
     bool denoise;
+    float raysBelow;    // roughness below which reflections are traced
+    bool tracedDiffuse; // diffuse light by rays
     float time, memory,
-        error; // of a frame, of the light field, of the picture (FLIP), times those of `medium`; mean over docs/bench.md's scenes
+        error; // of a frame, of the light field, of the picture (FLIP), times those of `medium`; of docs/bench.md's table
 };
 
 /// From the cheapest to the best.

@@ -44,11 +44,12 @@ int runBake(const BakeOptions& options, const Context& context)
         settings.octree.voxels = (*quality)->octreeVoxels;
     }
     settings.grid = set->grid;
-    const Result<EffectPlan> plan = planEffects(checkScene(*scene), options.effects);
+    const RenderSettings frame = *quality ? (*quality)->frame : RenderSettings(); // that the field is for
+    const Result<EffectPlan> plan = planEffects(checkScene(*scene, frame.raysBelow), options.effects);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
     capScene(*scene, *plan);
-    settings.radiance = plan->needsRadiance();
+    settings.radiance = plan->needsRadiance() || (frame.effects.tracedDiffuse && plan->on("diffuse"));
     settings.prefiltered = plan->needsPrefiltered() || !settings.radiance; // a traced ray's colour, when someone asks for one
     for (const PlannedEffect& effect : plan->effects)
         if (effect.on) settings.effects.push_back(effect.name);

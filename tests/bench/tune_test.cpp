@@ -90,6 +90,8 @@ TEST(QualityLevels, RiseInWhatTheyTakeAndAreReadByName)
     ASSERT_TRUE(high.ok());
     EXPECT_EQ(high->resolution, findQualityLevel("high")->resolution);
     EXPECT_EQ(high->probes, 0u);
+    EXPECT_EQ(high->frame.raysBelow, findQualityLevel("high")->raysBelow);
+    EXPECT_TRUE(loadQuality("reference")->frame.effects.tracedDiffuse);
     EXPECT_EQ(findQualityLevel("splendid"), nullptr);
 }
 
