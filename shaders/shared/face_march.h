@@ -131,7 +131,6 @@ SCONCE_FN void setUpSegment(SCONCE_INOUT(RayState) r)
     r.ex = int(Pb.x);
     r.ey = int(Pb.y);
     r.s = real(0.0);
-    r.came = 0;
     r.level = min(r.segments == 1 ? quality.startLevel : quality.coarsestLevel, int(field.topLevel));
     r.faceWords = mapWords(r.probe, r.face);
     r.phase = kPhaseMarch;
@@ -201,27 +200,67 @@ SCONCE_FN real texelExtent(SCONCE_IN(RayState) r, uint word)
     return max(sqrt(gx * gx + gy * gy), real(2.0) / real(field.faceSize)) / max(r.q0 + r.s * r.dq, real(1e-12));
 }
 
-/// Where the ray meets the plane of the texel r.word. From the plane itself: near its start, far from the probe, a ray's t is the difference
-/// of large numbers, of which the march along s has gathered more rounding.
-SCONCE_FN real timeAtPlane(SCONCE_IN(RayState) r)
+/// s at which the ray crosses a border of texels, along one axis. From the border alone: the same number whichever level's cell ends there.
+SCONCE_FN real sAtBorder(int border, real p, real inverse) { return (real(border) - p) * inverse; }
+
+/// s at which the ray comes into its texel; 0 in the one that the segment starts in.
+SCONCE_FN real sEntry(SCONCE_IN(RayState) r)
 {
+    return max(max(sAtBorder(r.ix, r.P.x, r.iP.x), sAtBorder(r.iy, r.P.y, r.iP.y)), real(0.0));
+}
+
+/// The border through which the ray came into its texel: 0 none, 1 in x, 2 in y.
+SCONCE_FN int entryAxis(SCONCE_IN(RayState) r)
+{
+    real sx = sAtBorder(r.ix, r.P.x, r.iP.x);
+    real sy = sAtBorder(r.iy, r.P.y, r.iP.y);
+    if (max(sx, sy) <= real(0.0)) return 0;
+    return sx > sy ? 1 : 2;
+}
+
+/// Where the ray meets the plane of the texel r.word (`plane`), or else comes into that texel. With x, y the texel's middle in pixels from the
+/// face's centre, the plane is 1 = q (W + gx (N/2 U - x W) + gy (N/2 V - y W)); a border of texels at x is N/2 U = x W. Far from the probe the
+/// t of a near hit is the difference of large numbers, so that the ray's start is taken to more digits than one number holds: what rounding
+/// took from it relative to the probe comes back (Knuth's two-sum), and W is multiplied in two halves (Dekker 1971).
+SCONCE_FN real timeOfEvent(SCONCE_IN(RayState) r, bool plane)
+{
+    int axis = plane ? 0 : entryAxis(r);
+    if (!plane && axis == 0) return r.ta;
+    vec3 start = mapCoordinates(r.face, r.relative);
+    vec3 step = mapCoordinates(r.face, r.direction);
+    SCONCE_EXACT vec3 centre = r.origin - r.relative;
+    SCONCE_EXACT vec3 place = (r.origin - (r.relative + centre)) + (centre - vec3(probeHeader(r.probe).centre));
+    vec3 lost = mapCoordinates(r.face, place);
+    SCONCE_EXACT real wide = real(4097.0) * start.z;
+    SCONCE_EXACT real high = wide - (wide - start.z);
+    SCONCE_EXACT real low = (start.z - high) + lost.z;
+
     real half_ = real(0.5) * real(field.faceSize);
-    int last = mirrorSize() - 1;
-    real u = (real(r.mirrorX != 0 ? last - r.ix : r.ix) + real(0.5)) / half_ - real(1.0);
-    real v = (real(r.mirrorY != 0 ? last - r.iy : r.iy) + real(0.5)) / half_ - real(1.0);
+    real middle = plane ? real(0.5) : real(0.0);
+    real x = (r.mirrorX != 0 ? real(mirrorSize() - r.ix) - middle : real(r.ix) + middle) - half_;
+    real y = (r.mirrorY != 0 ? real(mirrorSize() - r.iy) - middle : real(r.iy) + middle) - half_;
+    SCONCE_EXACT real fromX = ((half_ * start.x - x * high) - x * low) + half_ * lost.x;
+    SCONCE_EXACT real fromY = ((half_ * start.y - y * high) - y * low) + half_ * lost.y;
+    real alongX = half_ * step.x - x * step.z;
+    real alongY = half_ * step.y - y * step.z;
     real q = halfToReal(r.word);
-    real qu = q * unpackGradient(r.word >> 16) * half_;
-    real qv = q * unpackGradient(r.word >> 24) * half_;
-    vec3 plane = vec3(qu, qv, q - u * qu - v * qv); // 1 = dot(plane, (U, V, W)) on it
-    real along = dot(plane, mapCoordinates(r.face, r.direction));
-    real t = (real(1.0) - dot(plane, mapCoordinates(r.face, r.relative))) / (abs(along) > real(1e-12) ? along : real(1e-12));
+    real gx = unpackGradient(r.word >> 16);
+    real gy = unpackGradient(r.word >> 24);
+    SCONCE_EXACT real from = axis == 1 ? fromX : fromY;
+    real along = axis == 1 ? alongX : alongY;
+    if (plane)
+    {
+        from = ((q * high - real(1.0)) + q * low) + q * (gx * fromX + gy * fromY);
+        along = q * (step.z + gx * alongX + gy * alongY);
+    }
+    real t = -from / (abs(along) > real(1e-12) ? along : real(1e-12));
     return min(max(t, r.ta), r.tb);
 }
 
-SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
+SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s, real t)
 {
     rememberSurfel(r, s);
-    r.t = max(r.t, r.event == kEventCrossing ? timeAtPlane(r) : timeAt(r, s));
+    r.t = max(r.t, t);
     r.status = kHit;
     r.phase = kPhaseDone;
     if (r.opinionT == real(-1.0) && r.handoffs <= quality.maxHandoffs && quality.opinion > real(0.0) &&
@@ -232,9 +271,8 @@ SCONCE_FN void endAsHit(SCONCE_INOUT(RayState) r, real s)
     }
 }
 
-SCONCE_FN void handOff(SCONCE_INOUT(RayState) r)
+SCONCE_FN void handOff(SCONCE_INOUT(RayState) r, real t)
 {
-    real t = min(timeAt(r, r.s), r.tb);
     if (r.opinionT >= real(0.0))
     {
         if (t <= r.opinionReach) // no better known: the first answer, whose surfel is still remembered
@@ -252,9 +290,11 @@ SCONCE_FN void handOff(SCONCE_INOUT(RayState) r)
     r.phase = kPhaseChoose;
 }
 
-/// Written without branches where it can be: lanes that march beside each other would take all of them in turn.
+/// Written without branches where it can be: lanes that march beside each other would take all of them in turn. Cells of coarse levels only
+/// pass texels over: which texels a ray meets, and where it enters and leaves each, is the same number to the bit without them.
 SCONCE_FN void march(SCONCE_INOUT(RayState) r)
 {
+    real behind = real(0.00048828125); // 2^-11 texel, more than rounding can put a point ahead of the texel it is in
     for (int step = 0; step < kMarchSteps; ++step)
     {
         int x = (r.ix >> r.level) << r.level;
@@ -264,14 +304,15 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
         uint index = cellIndex(r, x, y, r.level);
         uint word = distanceWord(r.faceWords + chainOffset(field.faceSize, r.level) + index);
         ++r.distanceReads;
-        real sx = (real(bx) - r.P.x) * r.iP.x;
-        real sy = (real(by) - r.P.y) * r.iP.y;
+        real sx = sAtBorder(bx, r.P.x, r.iP.x);
+        real sy = sAtBorder(by, r.P.y, r.iP.y);
         real se = max(min(min(sx, sy), real(1.0)), r.s);
         real half_ = real(0.5) * real(1 << r.level);
         vec2 line = planeLine(r, word, real(x) + half_, real(y) + half_);
         real gs = line.x + r.s * line.y;
         real ge = line.x + se * line.y;
-        bool blocked = (word & 0xffffu) != 0u && min(gs, ge) < real(0.0);
+        bool left = min(sx, sy) < r.s; // it is not in this cell any more: `behind` held it back
+        bool blocked = (word & 0xffffu) != 0u && !left && min(gs, ge) < real(0.0);
         if (blocked && r.level == 0)
         {
             r.word = word;
@@ -283,7 +324,8 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
         {
             r.word = word;
             r.event = r.fresh ? kEventFirst : kEventContinued;
-            handOff(r);
+            r.s = sEntry(r);
+            handOff(r, timeOfEvent(r, false));
             break;
         }
         bool clip = blocked && gs > real(0.0); // in front so far: nothing of the cell is met before its bound
@@ -291,19 +333,17 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
         if (clip) s = min(max(r.s + (se - r.s) * (gs / (gs - ge)) * real(0.9999), r.s), se);
         bool crossX = !blocked && sx <= sy;
         bool crossY = !blocked && !crossX;
-        bool moved = clip && s > r.s;
-        int cx = max(r.ix, min(int(r.P.x + s * r.dP.x), min(r.ex, bx - 1)));
-        int cy = max(r.iy, min(int(r.P.y + s * r.dP.y), min(r.ey, by - 1)));
+        int cx = max(r.ix, min(int(r.P.x + s * r.dP.x - behind), min(r.ex, bx - 1)));
+        int cy = max(r.iy, min(int(r.P.y + s * r.dP.y - behind), min(r.ey, by - 1)));
         int crossed = crossX ? bx : by;
         int up = r.level + 2;
         bool climbs = up <= int(field.topLevel) && up <= quality.coarsestLevel && (crossed & ((1 << up) - 1)) == 0;
-        r.fresh = r.fresh && blocked;
-        if (!blocked && (se >= real(0.99999) || (crossX ? bx > r.ex : by > r.ey)))
+        r.fresh = r.fresh && blocked && !(clip && (cx != r.ix || cy != r.iy));
+        if (!blocked && ((se >= real(0.99999) && !left) || (crossX ? bx > r.ex : by > r.ey)))
         {
             endSegment(r);
             break;
         }
-        r.came = moved ? 0 : (crossX ? 1 : (crossY ? 2 : r.came));
         r.ix = crossX ? bx : (clip || crossY ? cx : r.ix);
         r.iy = crossY ? by : (clip || crossX ? cy : r.iy);
         r.level = blocked ? r.level - 2 : (climbs ? up : r.level);
@@ -312,19 +352,19 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
 }
 
 /// Whether the previous texel along the ray and this one show one surface: the plane of either predicts the other's distance.
-SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, real tolerance)
+SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, int axis, real tolerance)
 {
-    int px = r.came == 1 ? r.ix - 1 : r.ix;
-    int py = r.came == 2 ? r.iy - 1 : r.iy;
-    if (r.came == 0 || px < 0 || py < 0) return false;
+    int px = axis == 1 ? r.ix - 1 : r.ix;
+    int py = axis == 2 ? r.iy - 1 : r.iy;
+    if (axis == 0 || px < 0 || py < 0) return false;
     uint before = distanceWord(r.faceWords + cellIndex(r, px, py, 0));
     ++r.distanceReads;
     if ((before & 0xffffu) == 0u) return false;
     real qb = halfToReal(before);
     real qc = halfToReal(r.word);
-    real gb = unpackGradient(before >> (r.came == 1 ? 16 : 24));
-    real gc = unpackGradient(r.word >> (r.came == 1 ? 16 : 24));
-    if (r.came == 1 ? r.mirrorX != 0 : r.mirrorY != 0)
+    real gb = unpackGradient(before >> (axis == 1 ? 16 : 24));
+    real gc = unpackGradient(r.word >> (axis == 1 ? 16 : 24));
+    if (axis == 1 ? r.mirrorX != 0 : r.mirrorY != 0)
     {
         gb = -gb;
         gc = -gc;
@@ -332,9 +372,31 @@ SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, real tolerance)
     return abs(qb * (real(1.0) + gb) - qc) <= tolerance * qc || abs(qc * (real(1.0) - gc) - qb) <= tolerance * qb;
 }
 
+/// Goes on behind a texel.
+SCONCE_FN void passTexel(SCONCE_INOUT(RayState) r)
+{
+    bool stepX = sAtBorder(r.ix + 1, r.P.x, r.iP.x) <= sAtBorder(r.iy + 1, r.P.y, r.iP.y);
+    bool ends = r.sEnd >= real(0.99999) || (stepX ? r.ix + 1 > r.ex : r.iy + 1 > r.ey);
+    r.s = r.sEnd;
+    if (ends)
+    {
+        endSegment(r);
+        return;
+    }
+    if (stepX) r.ix += 1;
+    else r.iy += 1;
+    r.phase = kPhaseMarch;
+}
+
 /// The ray is behind the plane of a texel somewhere in it: hit, free, or more than this probe can tell.
 SCONCE_FN void fineEvent(SCONCE_INOUT(RayState) r)
 {
+    r.s = sEntry(r);
+    if (r.s >= real(0.99999))
+    {
+        endSegment(r);
+        return;
+    }
     vec2 line = planeLine(r, r.word, real(r.ix) + real(0.5), real(r.iy) + real(0.5));
     real ga = line.x + r.s * line.y;
     real gb = line.x + r.sEnd * line.y;
@@ -352,59 +414,34 @@ SCONCE_FN void fineEvent(SCONCE_INOUT(RayState) r)
     r.fresh = false;
     r.event = ga >= real(0.0) ? kEventCrossing : (first ? kEventFirst : kEventContinued);
     r.wordSize = texelExtent(r, r.word);
-    if (ga >= real(0.0)) // crosses the plane inside the texel
+    bool hit = false;
+    real at = r.s;
+    if (r.event == kEventCrossing) // a front side by construction: ga >= 0 > gb
     {
-        real sx = min(max(-line.x / line.y, r.s), r.sEnd);
-        real qx = r.q0 + sx * r.dq;
-        // leaving through the back of the plane can't be: ga >= 0 > gb is a front side by construction
-        if (qc <= qx * (real(1.0) + thickness)) endAsHit(r, sx);
-        else handOff(r);
-        return;
+        at = min(max(-line.x / line.y, r.s), r.sEnd);
+        hit = qc <= (r.q0 + at * r.dq) * (real(1.0) + thickness);
     }
-    bool facing = gb * qs < ga * qe; // g/q is proportional to the height over the plane: it falls when the ray runs into the surface
-    bool fromOrigin = first && r.handoffs == 1;
-    if (facing)
+    else if (gb * qs < ga * qe) // runs into the surface: g/q, proportional to the height over its plane, falls
     {
         real qNear = max(qs, qe);
-        bool hit = false;
-        if (!fromOrigin)
+        if (!first || r.handoffs > 1)
         {
-            if (first || r.came == 0) hit = qc <= qNear * (real(1.0) + real(0.25) * footprint + epsilon);
-            else hit = qc <= qNear * (real(1.0) + thickness) && continuesPrevious(r, footprint + epsilon);
+            int axis = entryAxis(r);
+            if (first || axis == 0) hit = qc <= qNear * (real(1.0) + real(0.25) * footprint + epsilon);
+            else hit = qc <= qNear * (real(1.0) + thickness) && continuesPrevious(r, axis, footprint + epsilon);
         }
-        if (hit) endAsHit(r, r.s);
-        else handOff(r);
-        return;
     }
-    // Behind the plane and coming out of it: the ray's own start surface, seen a little too near, or the back of something.
-    real cosine = max(footprint / max(slope, footprint), real(0.12));
-    bool ownSurface = timeAt(r, r.s) * qc <= footprint / cosine + epsilon && -ga <= thickness * qs;
-    if (!ownSurface)
+    else // behind the plane and coming out of it: the ray's own start surface, seen a little too near, or the back of something
     {
-        handOff(r);
-        return;
-    }
-    if (gb >= real(0.0) || r.sEnd < real(0.99999))
-    {
-        r.s = r.sEnd; // free: go on behind this texel
-        bool stepX = (real((r.ix) + 1) - r.P.x) * r.iP.x <= (real((r.iy) + 1) - r.P.y) * r.iP.y;
-        if (r.sEnd >= real(0.99999) || (stepX ? r.ix + 1 > r.ex : r.iy + 1 > r.ey))
+        real cosine = max(footprint / max(slope, footprint), real(0.12));
+        bool ownSurface = timeAt(r, r.s) * qc <= footprint / cosine + epsilon && -ga <= thickness * qs;
+        if (ownSurface)
         {
-            endSegment(r);
+            passTexel(r);
             return;
         }
-        if (stepX)
-        {
-            r.ix += 1;
-            r.came = 1;
-        }
-        else
-        {
-            r.iy += 1;
-            r.came = 2;
-        }
-        r.phase = kPhaseMarch;
-        return;
     }
-    endSegment(r);
+    real t = timeOfEvent(r, hit && r.event == kEventCrossing);
+    if (hit) endAsHit(r, at, t);
+    else handOff(r, t);
 }

@@ -12,6 +12,7 @@
 #define SCONCE_INOUT(type) type&
 #define SCONCE_IN(type) const type&
 #define SCONCE_CONST static constexpr
+#define SCONCE_EXACT
 #define SCONCE_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
 namespace sconce::gpu
 {
@@ -39,6 +40,7 @@ using glm::vec4;
 #define SCONCE_INOUT(type) inout type
 #define SCONCE_IN(type) in type
 #define SCONCE_CONST const
+#define SCONCE_EXACT precise // a compiler must not take (a + b) - a for b
 #define SCONCE_CHECK_SIZE(type, bytes)
 #define SCONCE_STRUCTS_BEGIN
 #define SCONCE_STRUCTS_END

@@ -97,6 +97,8 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
     uint found = kNoProbe;
     vec3 hitNormal = vec3(real(0.0));
     if (opinion) hitNormal = texelNormal(r.lastFace, r.pixel, r.hitWord);
+    // One that gave the ray up where this probe took it over would be asked at the very border of its texel: it has answered.
+    bool fromEntry = r.t - real(2.0) * r.wordSize <= r.tEntered;
     bool starts = r.t <= real(0.5) * real(field.voxel);
     for (int list = 0; list < 3 && found == kNoProbe; ++list)
     {
@@ -109,7 +111,8 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
             if (opinion)
             {
                 vec3 to = vec3(probeHeader(ranked[k]).centre) - (r.origin + r.t * r.direction);
-                if (ranked[k] != r.probe && dot(to, to) < best && dot(to, hitNormal) > real(0.0))
+                bool asked = ranked[k] == r.probe || (fromEntry && wasTried(r.tried, ranked[k]));
+                if (!asked && dot(to, to) < best && dot(to, hitNormal) > real(0.0))
                 {
                     best = dot(to, to);
                     found = ranked[k];

@@ -62,7 +62,6 @@ struct RayState
     int level;
     real s;
     real sEnd;      // end of the current texel
-    int came;       // how the current cell was entered: 0 not through a border, 1 in x, 2 in y
     uint word;      // texel of the fine event
     real wordSize;  // extent of that texel on its surface, field units
     uint event;     // kEvent...: how the last surfel was met

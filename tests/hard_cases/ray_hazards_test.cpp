@@ -196,28 +196,6 @@ TEST(RayHazards, RaysAimedWithinATexelOfSilhouettes)
     expectAtMost("rays within a texel of silhouettes: unknown", kRays, score.unresolved, 0.05);
 }
 
-TEST(RayHazards, AnswersDoNotDependOnTheLevelsUsed)
-{
-    const auto scene = hardScene("cornell");
-    const RaySet set = glossyRaysOf(*scene, kRays);
-    Walk<float> walk(scene->field, defaultQuality());
-    const auto expected = walkAll(walk, set);
-    size_t worst = 0;
-    for (int coarsest : {0, 2, 4, 6})
-    {
-        gpu::TraceQuality quality = defaultQuality();
-        quality.coarsestLevel = coarsest;
-        quality.startLevel = std::min(quality.startLevel, coarsest);
-        Walk<float> other(scene->field, quality);
-        const auto got = walkAll(other, set);
-        size_t different = 0;
-        for (size_t i = 0; i < kRays; ++i)
-            different += got[i].status != expected[i].status || std::abs(got[i].t - expected[i].t) > 1e-4f * expected[i].t;
-        worst = std::max(worst, different);
-    }
-    expectAtMost("coarsest level 0, 2, 4, 6: share answered otherwise", kRays, double(worst) / kRays, 0.001, 0.0);
-}
-
 TEST(RayHazards, ScalingByAHundredthAndAHundredChangesNoScore)
 {
     double right[3] = {};

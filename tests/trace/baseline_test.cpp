@@ -35,7 +35,8 @@ Room& room()
 std::vector<gpu::Ray> raysOf(const RaySet& set, Baseline baseline)
 {
     std::vector<gpu::Ray> rays(set.size());
-    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + baselineOffset(baseline) * set.normals[i], set.directions[i]};
+    for (size_t i = 0; i < rays.size(); ++i)
+        rays[i] = {set.origins[i] + baselineOffset(baseline) * set.normals[i], set.directions[i], vec3(0.0f)};
     return rays;
 }
 
@@ -174,12 +175,12 @@ TEST_P(BaselineOnGpu, OddRaysEndFinite)
     auto tracer = RayTracer::create(gpu(), *device, traceRaysPass(GetParam()));
     std::vector<gpu::Ray> rays;
     for (float a : {0.0f, -0.0f, 1.0f, std::nanf(""), INFINITY, -INFINITY, 1e-40f, 1e30f})
-        for (float b : {0.0f, 1.0f, std::nanf(""), INFINITY}) rays.push_back({vec3(a, b, 0.5f), vec3(b, a, 0.0f)});
+        for (float b : {0.0f, 1.0f, std::nanf(""), INFINITY}) rays.push_back({vec3(a, b, 0.5f), vec3(b, a, 0.0f), vec3(0.0f)});
     for (const gpu::ProbeHeader& probe : field->probes) // from the probes' centres along axes and diagonals
         for (int i = 0; i < 27; ++i)
             if (i != 13)
-                rays.push_back(
-                    {probe.centre * field->info.scale + field->info.origin, glm::normalize(vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1))});
+                rays.push_back({probe.centre * field->info.scale + field->info.origin,
+                                glm::normalize(vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)), vec3(0.0f)});
     std::vector<gpu::RayHit> hits(rays.size());
     ASSERT_TRUE(tracer->trace(rays, hits));
     const auto check = [&]

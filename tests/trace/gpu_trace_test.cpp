@@ -68,7 +68,7 @@ TEST_F(GpuTrace, OddRaysEndFinite)
     const float nan = std::nanf(""), inf = INFINITY;
     std::vector<gpu::Ray> rays;
     for (float a : {0.0f, -0.0f, 1.0f, nan, inf, -inf, 1e-40f, 1e30f})
-        for (float b : {0.0f, 1.0f, nan, inf}) rays.push_back({vec3(a, b, 0.5f), vec3(b, a, 0.0f)});
+        for (float b : {0.0f, 1.0f, nan, inf}) rays.push_back({vec3(a, b, 0.5f), vec3(b, a, 0.0f), vec3(0.0f)});
     std::vector<gpu::RayHit> hits(rays.size());
     ASSERT_TRUE(tracer->trace(rays, hits));
     for (const gpu::RayHit& hit : hits)

@@ -119,8 +119,8 @@ TEST(ProbeTrace, ResultDoesNotDependOnTheLevelsUsed)
             const auto got = traceAll<float>(cornell(), set, quality);
             size_t different = 0;
             for (size_t i = 0; i < got.size(); ++i)
-                different += got[i].status != expected[i].status || std::abs(got[i].t - expected[i].t) > 1e-4f * expected[i].t;
-            EXPECT_LE(different, got.size() / 1000) << "coarsest " << coarsest << " start " << start;
+                different += got[i].status != expected[i].status || got[i].t != expected[i].t || got[i].handoffs != expected[i].handoffs;
+            EXPECT_EQ(different, 0u) << "coarsest " << coarsest << " start " << start;
         }
 }
 
