@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "runtime/nan_scan.h"
 #include "spirv/shadow_masked_frag.h"
 #include "spirv/shadow_masked_vert.h"
 #include "spirv/shadow_vert.h"
@@ -269,7 +270,13 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
             });
         if (!status) return status;
     }
-    return gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toSampled); });
+    return gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            everyMap(cmd, toSampled);
+            for (const Kind& kind : kinds)
+                if (kind.maps && kind.layers > 0) scanImage(gpu, cmd, "shadow maps", kind.maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        });
 }
 
 } // namespace sconce

@@ -168,6 +168,7 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
     addressInfo.buffer = made.buffer;
     made.deviceAddress = vk.GetBufferDeviceAddress(host.device, &addressInfo);
+    if (scan) NanScan::note(made);
     return made;
 }
 
@@ -181,7 +182,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     info.mipLevels = desc.mips;
     info.arrayLayers = desc.layers;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = desc.usage;
+    info.usage = desc.usage | (scan ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0);
     const VkPhysicalDeviceLimits& limits = properties.limits;
     const uint32_t side = volume ? limits.maxImageDimension3D : limits.maxImageDimension2D;
     if (std::max({desc.width, desc.height, desc.depth}) > side || desc.layers > limits.maxImageArrayLayers)
@@ -202,6 +203,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     made.piece = *piece;
     result = vk.BindImageMemory(host.device, made.image, made.piece.memory(), made.piece.offset);
     if (result != VK_SUCCESS) return failure("vkBindImageMemory", result);
+    if (scan) NanScan::note(made);
     const VkImageUsageFlags viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     if (!(desc.usage & viewable)) return made;

@@ -1,7 +1,10 @@
 #include "runtime/nan_scan.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <mutex>
+#include <utility>
 
 #include "spirv/nan_scan_comp.h"
 
@@ -43,6 +46,15 @@ Layout layoutOf(VkFormat format)
     }
 }
 
+std::mutex coverageMutex;
+NanScan::Coverage coverage;
+
+void noteName(std::set<std::string_view> NanScan::Coverage::*set, const char* name)
+{
+    const std::lock_guard lock(coverageMutex);
+    (coverage.*set).insert(name);
+}
+
 void everythingBefore(const Gpu& gpu, VkCommandBuffer cmd)
 {
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
@@ -73,7 +85,24 @@ bool NanScan::takeSlot(const Scan& scan)
     tooMany = tooMany || scans.size() == kScans;
     if (tooMany) return false;
     scans.push_back(scan);
+    noteName(&NanScan::Coverage::scanned, scan.what);
     return true;
+}
+
+NanScan::Coverage NanScan::takeCoverage()
+{
+    const std::lock_guard lock(coverageMutex);
+    return std::exchange(coverage, {});
+}
+
+void NanScan::note(const Buffer& made)
+{
+    noteName(&Coverage::made, made.what());
+}
+
+void NanScan::note(const GpuImage& made)
+{
+    if (layoutOf(made.desc().format).wordsAPixel > 0) noteName(&Coverage::made, made.what());
 }
 
 void NanScan::dispatch(VkCommandBuffer cmd, VkDeviceAddress words, uint32_t count, uint32_t before, const Words& how)
@@ -88,7 +117,7 @@ void NanScan::dispatch(VkCommandBuffer cmd, VkDeviceAddress words, uint32_t coun
 void NanScan::buffer(VkCommandBuffer cmd, const char* pass, const Buffer& buffer, const Words& words)
 {
     const VkDeviceSize count = words.count > 0 ? words.count : buffer.size() / 4 - words.first;
-    if (!takeSlot({pass, buffer.what(), words.kind, 0, 0})) return;
+    if (!takeSlot({pass, buffer.what(), 0, 0, 0, 0})) return;
     everythingBefore(gpu, cmd);
     dispatch(cmd, buffer.address() + 4 * words.first, uint32_t(count), uint32_t(words.first), words);
 }
@@ -97,26 +126,27 @@ void NanScan::image(VkCommandBuffer cmd, const char* pass, const GpuImage& image
 {
     const auto [wordsAPixel, kind] = layoutOf(image.desc().format);
     if (wordsAPixel == 0) return;
-    const uint32_t width = image.desc().width, height = image.desc().height;
-    if (!takeSlot({pass, image.what(), kind, wordsAPixel, width})) return;
+    const auto& [width, height, layers] = std::array{image.desc().width, image.desc().height, image.desc().layers};
+    if (!takeSlot({pass, image.what(), wordsAPixel, width, height, layers})) return;
     constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     constexpr VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     transition(gpu, cmd, image, {layout, source, all, all, any, any});
     const uint32_t rows = uint32_t(kScratchBytes / 4 / (VkDeviceSize(wordsAPixel) * width));
-    for (uint32_t y = 0; y < height; y += rows)
-    {
-        const uint32_t high = std::min(rows, height - y);
-        VkBufferImageCopy copy{};
-        copy.imageSubresource = {image.aspect(), 0, 0, 1};
-        copy.imageOffset = {0, int32_t(y), 0};
-        copy.imageExtent = {width, high, 1};
-        gpu.vk.CmdCopyImageToBuffer(cmd, image.handle(), source, scratch.handle(), 1, &copy);
-        everythingBefore(gpu, cmd);
-        Words words;
-        words.kind = kind;
-        dispatch(cmd, scratch.address(), wordsAPixel * width * high, wordsAPixel * width * y, words);
-    }
+    for (uint32_t layer = 0; layer < layers; ++layer)
+        for (uint32_t y = 0; y < height; y += rows)
+        {
+            const uint32_t high = std::min(rows, height - y);
+            VkBufferImageCopy copy{};
+            copy.imageSubresource = {image.aspect(), 0, layer, 1};
+            copy.imageOffset = {0, int32_t(y), 0};
+            copy.imageExtent = {width, high, 1};
+            gpu.vk.CmdCopyImageToBuffer(cmd, image.handle(), source, scratch.handle(), 1, &copy);
+            everythingBefore(gpu, cmd);
+            Words words;
+            words.kind = kind;
+            dispatch(cmd, scratch.address(), wordsAPixel * width * high, wordsAPixel * width * (layer * height + y), words);
+        }
     transition(gpu, cmd, image, {source, layout, all, all, any, any});
 }
 
@@ -134,7 +164,9 @@ Status NanScan::findings()
         else
         {
             const uint32_t pixel = place[i] / scan.wordsAPixel;
-            first += "pixel (" + std::to_string(pixel % scan.width) + ", " + std::to_string(pixel / scan.width) + "), word " +
+            const uint32_t row = pixel / scan.width;
+            first += "pixel (" + std::to_string(pixel % scan.width) + ", " + std::to_string(row % scan.height) + ")" +
+                     (scan.layers > 1 ? " of layer " + std::to_string(row / scan.height) : "") + ", word " +
                      std::to_string(place[i] % scan.wordsAPixel) + " of it";
         }
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include "runtime/pipeline.h"
@@ -26,11 +28,21 @@ public:
     };
     /// Records a scan; `pass` must be a literal. Outside rendering only.
     void buffer(VkCommandBuffer cmd, const char* pass, const Buffer& buffer, const Words& words);
-    /// The same for an image of floats, made with VK_IMAGE_USAGE_TRANSFER_SRC_BIT. Images of integers have nothing to find.
+    /// The same for all layers of an image's first mip. Images of integers have nothing to find.
     void image(VkCommandBuffer cmd, const char* pass, const GpuImage& image, VkImageLayout layout);
 
     /// After the command buffers have finished: deviceFailure with the sentence of the first bad number, in the order of recording.
     Status findings();
+
+    /// Names of all buffers and all images of floats that scanning Gpus of this process have made since the last call, and of those that
+    /// were scanned: what is in the one set and not in the other must have a reason (tests/frame/nan_scan_test.cpp holds the list).
+    struct Coverage
+    {
+        std::set<std::string_view> made, scanned;
+    };
+    static Coverage takeCoverage();
+    static void note(const Buffer& made);
+    static void note(const GpuImage& made);
 
 private:
     explicit NanScan(Gpu& owner) : gpu(owner) {}
@@ -38,7 +50,7 @@ private:
     {
         const char* pass;
         const char* what;
-        uint32_t kind, wordsAPixel, width; // width 0: a buffer
+        uint32_t wordsAPixel, width, height, layers; // width 0: a buffer
     };
     bool takeSlot(const Scan& scan);
     void dispatch(VkCommandBuffer cmd, VkDeviceAddress words, uint32_t count, uint32_t before, const Words& how);

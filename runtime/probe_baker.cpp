@@ -253,6 +253,8 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
         scanBuffer(gpu, cmd, "bake chain", words, {.kind = gpu::kScanNearness, .count = info.wordsPerProbe});
         return;
     }
+    scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
+    scanBuffer(gpu, cmd, "bake surfaces", faceLight, {.kind = gpu::kScanRadiance, .count = VkDeviceSize(6) * n * n});
     push = pushFor(centre);
     push.extra = faceLight.address();
     const VkDescriptorSet imagesOnly[] = {images.handle()};
