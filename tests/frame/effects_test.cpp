@@ -134,7 +134,10 @@ TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
     {
         const auto device = DeviceScene::create(gpu(), scene, field->info, bare ? sceneForFrames(settings.effects) : DeviceSceneDesc{});
         ASSERT_TRUE(device) << device.error().message;
-        if (bare) EXPECT_TRUE(device->lights().lights.empty());
+        if (bare)
+        {
+            EXPECT_TRUE(device->lights().lights.empty());
+        }
         bytes[bare] = device->deviceBytes();
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         ASSERT_TRUE(renderer);
