@@ -10,9 +10,9 @@ out=${OUT:-out/sheet} size=${SIZE:-160x90} spp=${SPP:-256} scenes=${SCONCE_SCENE
 sconce=${SCONCE:-build/release/tools/sconce}
 mkdir -p "$out"
 bench/emitter_room.py 16 > "$out/room16.gltf"
-bench/emitter_room.py 4 --point > "$out/point.gltf"
-bench/emitter_room.py 4 > "$out/host.gltf" # the room without its guest: the field of the row `moving object`
-bench/emitter_room.py 4 --guest > "$out/guest.gltf"
+bench/emitter_room.py 16 --point > "$out/point.gltf"
+bench/emitter_room.py 16 > "$out/host.gltf" # the room without its guest: the field of the row `moving object`
+bench/emitter_room.py 16 --guest > "$out/guest.gltf"
 pictures=()
 echo "| effect | scene | of | passes, ms | relMSE | FLIP |"
 echo "|---|---|---|---|---|---|"
