@@ -81,6 +81,7 @@ void applyLevel(PointSettings& settings, const QualityLevel& level)
     settings.bounces = level.bounces;
     settings.quality = level.quality;
     settings.frame.glossyRays = level.glossyRays;
+    settings.frame.traceEvery = level.traceEvery;
     settings.frame.areaSamples = level.areaSamples;
     settings.frame.effects.denoise = level.denoise;
     settings.frame.raysBelow = level.raysBelow;

@@ -1,7 +1,5 @@
 #include "runtime/indirect_light.h"
 
-#include <bit>
-
 #include "runtime/environment_brdf.h"
 #include "runtime/nan_scan.h"
 #include "spirv/gather_light_comp.h"
@@ -89,13 +87,13 @@ Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeli
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
     return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts},
-                    {term, counts ? 1u : 0u, term == gpu::kTermMirror ? 0u : uint32_t(std::countr_zero(desc.traceEvery))});
+                    {term, counts ? 1u : 0u, term == gpu::kTermMirror ? 0u : everyLog()});
 }
 
 Status IndirectLight::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
     if (desc.traceEvery == 1) return success();
-    return makePass(pipeline, set, reconstruct_comp, {&image, &image}, {term, 0u, uint32_t(std::countr_zero(desc.traceEvery))});
+    return makePass(pipeline, set, reconstruct_comp, {&image, &image}, {term, 0u, everyLog()});
 }
 
 Status IndirectLight::makeGather()
@@ -131,7 +129,7 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
     const bool any = effects.diffuse || effects.rough || effects.glossy || effects.mirror;
     if (effects.tiles && any)
     {
-        auto tiles = TileList::create(gpu, made.frame, desc.width, desc.height);
+        auto tiles = TileList::create(gpu, made.frame, desc.width, desc.height, made.everyLog());
         if (!tiles) return tiles.error();
         made.tileList = std::make_unique<TileList>(std::move(*tiles));
     }
@@ -189,7 +187,7 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
         work();
         if (timer) timer->end(cmd);
     };
-    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, uint32_t list, const char* name)
+    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, uint32_t list, const char* name, uint32_t tilesLog = 0)
     {
         if (!pipeline) return;
         timed(name,
@@ -197,7 +195,7 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
               {
                   const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
                   pipeline.bind(cmd, sets);
-                  dispatchTiles(*gpu, cmd, tiles(), list, desc.width, desc.height);
+                  dispatchTiles(*gpu, cmd, tiles(), list, desc.width, desc.height, tilesLog);
               });
     };
     const auto scan = [&](const char* name, std::initializer_list<const GpuImage*> images)
@@ -208,9 +206,9 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
     pass(gatherPass, gatherSet, gatherList(), "gather light");
     scan("gather light", {&diffuseImage, &roughImage});
-    pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace");
+    pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace", everyLog());
     scan("diffuse trace", {&diffuseImage});
-    pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace");
+    pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace", everyLog());
     scan("glossy trace", {&glossyImage});
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <memory>
 
 #include "runtime/denoiser.h"
@@ -21,8 +22,8 @@ public:
         IndirectEffects effects;
         uint32_t traceEvery = 1; // trace one pixel of 1, 2, 4, 8 or 16, of reflections and of traced diffuse light, and make the rest from
                                  // it: shaders/reconstruct.comp. Mirrors are traced at every pixel
-        bool counts = false; // write what each pixel's ray cost: an image of 16 bytes a pixel
-        Spirv glossyShader;  // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
+        bool counts = false;     // write what each pixel's ray cost: an image of 16 bytes a pixel
+        Spirv glossyShader;      // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
     };
     /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, deviceFailure.
     static Result<IndirectLight> create(Gpu& gpu, const LightField& field, const Desc& desc);
@@ -58,6 +59,7 @@ private:
     Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
+    uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
     bool gathersDiffuse() const { return desc.effects.diffuse && !desc.effects.tracedDiffuse; }
     uint32_t gatherList() const // of the tiles that the gathering pass runs on
     {

@@ -33,6 +33,7 @@ struct QualityLevel
     uint32_t bounces;      // of the bake
     Quality quality;       // of LightField::create
     uint32_t glossyRays;   // a pixel
+    uint32_t traceEvery;   // pixels for each that is traced
     uint32_t areaSamples;  // a pixel
     bool denoise;
     float raysBelow;    // roughness below which reflections are traced

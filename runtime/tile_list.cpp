@@ -4,16 +4,22 @@
 
 namespace sconce
 {
+namespace
+{
 
-Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, uint32_t width, uint32_t height)
+constexpr uint32_t kRuns = 2 * gpu::kListCount; // of passes, then of sparse passes
+
+} // namespace
+
+Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, uint32_t width, uint32_t height, uint32_t everyLog)
 {
     TileList made;
     made.gpu = &gpu;
     made.across = (width + gpu::kTileSide - 1) / gpu::kTileSide;
     made.down = (height + gpu::kTileSide - 1) / gpu::kTileSide;
     const VkDeviceSize words = VkDeviceSize(gpu::kListCount) * made.across * made.down;
-    auto lists = gpu.makeBuffer(gpu::kListCount * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device,
-                                "tile lists");
+    auto lists =
+        gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
     made.lists = std::move(*lists);
     const DescriptorSet::Binding bindings[] = {{kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
@@ -22,7 +28,7 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, uint32_t width,
     made.set = std::move(*set);
     made.set.write(kTileBinding, made.lists);
     const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
-    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0);
+    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, std::span(&everyLog, 1));
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
     return made;
@@ -31,7 +37,7 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, uint32_t width,
 void TileList::record(VkCommandBuffer cmd) const
 {
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, indirect = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
-    gpu::TileRuns none[gpu::kListCount];
+    gpu::TileRuns none[kRuns];
     for (gpu::TileRuns& runs : none) runs = {gpu::kTileRow, 0, 1, 0};
     memoryBarrier(*gpu, cmd, compute | indirect, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT); // the frame before may still run by them
@@ -45,17 +51,18 @@ void TileList::record(VkCommandBuffer cmd) const
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
 }
 
-void TileList::dispatch(VkCommandBuffer cmd, uint32_t list) const
+void TileList::dispatch(VkCommandBuffer cmd, uint32_t list, bool sparse) const
 {
-    gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), list * sizeof(gpu::TileRuns));
+    gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (list + (sparse ? gpu::kListCount : 0)) * sizeof(gpu::TileRuns));
 }
 
-void dispatchTiles(Gpu& gpu, VkCommandBuffer cmd, const TileList* tiles, uint32_t list, uint32_t width, uint32_t height)
+void dispatchTiles(Gpu& gpu, VkCommandBuffer cmd, const TileList* tiles, uint32_t list, uint32_t width, uint32_t height, uint32_t everyLog)
 {
+    const uint32_t across = (width + gpu::kTileSide - 1) / gpu::kTileSide, down = (height + gpu::kTileSide - 1) / gpu::kTileSide;
     if (tiles)
-        tiles->dispatch(cmd, list);
+        tiles->dispatch(cmd, list, everyLog > 0);
     else
-        gpu.vk.CmdDispatch(cmd, (width + gpu::kTileSide - 1) / gpu::kTileSide, (height + gpu::kTileSide - 1) / gpu::kTileSide, 1);
+        gpu.vk.CmdDispatch(cmd, across, ((down - 1) >> everyLog) + 1, 1);
 }
 
 } // namespace sconce

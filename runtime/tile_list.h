@@ -11,13 +11,14 @@ namespace sconce
 class TileList
 {
 public:
-    /// @param frame  the gpu::FrameView
-    static Result<TileList> create(Gpu& gpu, const Buffer& frame, uint32_t width, uint32_t height);
+    /// @param frame     the gpu::FrameView
+    /// @param everyLog  log2 of the tiles that a workgroup of a sparse pass takes
+    static Result<TileList> create(Gpu& gpu, const Buffer& frame, uint32_t width, uint32_t height, uint32_t everyLog);
     void setInputs(const FrameInputs& inputs) { writeInputs(set, inputs); }
     /// Ends with the barrier that lets passes run by the lists.
     void record(VkCommandBuffer cmd) const;
-    /// Dispatches the bound pass over a list's tiles.
-    void dispatch(VkCommandBuffer cmd, uint32_t list) const;
+    /// Dispatches the bound pass over a list's tiles; a sparse pass by as many fewer workgroups.
+    void dispatch(VkCommandBuffer cmd, uint32_t list, bool sparse) const;
 
     const Buffer& buffer() const { return lists; } // binding kTileBinding of shaders/tiles.glsl
     explicit operator bool() const { return bool(pipeline); }
@@ -33,6 +34,8 @@ private:
 inline constexpr uint32_t kTileBinding = 8;
 
 /// Dispatches the bound pass over a list's tiles, or over the whole picture where there is no list.
-void dispatchTiles(Gpu& gpu, VkCommandBuffer cmd, const TileList* tiles, uint32_t list, uint32_t width, uint32_t height);
+/// @param everyLog  log2 of the tiles that a workgroup takes; 0, or what the list was made with
+void dispatchTiles(Gpu& gpu, VkCommandBuffer cmd, const TileList* tiles, uint32_t list, uint32_t width, uint32_t height,
+                   uint32_t everyLog = 0);
 
 } // namespace sconce

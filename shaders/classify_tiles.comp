@@ -5,11 +5,13 @@
 #include "gbuffer_read.glsl"
 
 // Lists the tiles in which some pixel has a term, for each term, and those of the terms that are gathered. The order of a list varies from run to run; no pixel depends on it.
-// `runs` starts as (kTileRow, 0, 1, 0). Dispatch: ceil(width/8) x ceil(height/8).
+// `runs` and `sparseRuns` start as (kTileRow, 0, 1, 0). Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint kEveryLog = 0u; // log2 of the tiles that a workgroup of a sparse pass takes
 layout(scalar, set = 1, binding = 8) buffer SconceTiles
 {
     TileRuns runs[kListCount];
+    TileRuns sparseRuns[kListCount];
     uint tiles[];
 };
 shared uint tileTerms;
@@ -30,5 +32,6 @@ void main()
     if (list >= kListCount || (tileTerms & wanted) == 0u) return;
     uint index = atomicAdd(runs[list].count, 1u);
     atomicMax(runs[list].y, index / kTileRow + 1u);
+    if (kEveryLog > 0u) atomicMax(sparseRuns[list].y, (index >> kEveryLog) / kTileRow + 1u);
     tiles[list * gl_NumWorkGroups.x * gl_NumWorkGroups.y + index] = gl_WorkGroupID.x | (gl_WorkGroupID.y << 16);
 }

@@ -6,6 +6,7 @@ layout(constant_id = SCONCE_TILE_CONSTANT) const bool kTiled = true; // false: o
 layout(scalar, set = 1, binding = 8) readonly buffer SconceTiles
 {
     TileRuns runs[kListCount];
+    TileRuns sparseRuns[kListCount]; // of passes whose workgroups take several tiles each
     uint tiles[]; // [list][as many as the picture has]: x | y << 16
 };
 

@@ -7,7 +7,7 @@
 #include "sparse.glsl"
 
 // Light by traced rays. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray; kTermDiffuse: cosine-weighted rays, whose
-// mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel; of each 2^kEveryLog
+// mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel, or sparseRuns; of each 2^kEveryLog
 // tiles one workgroup finds the pixels to trace, and its invocations share them out, so that none idles beside a pixel that is left out.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 3) const uint kTerm = kTermGlossy;
