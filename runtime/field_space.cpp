@@ -43,6 +43,7 @@ void summariseProbe(FieldData& field, size_t probe)
     gpu::ProbeHeader& header = field.probes[probe];
     const uint32_t size = field.info.faceSize;
     float nearest = 4.0f * field.info.diagonal, farthest = 0.0f;
+    double inverse = 0.0, solid = 0.0; // over all directions, weighted by the texels' solid angles
     std::vector<float> distances(size_t(size) * size);
     for (int face = 0; face < 6; ++face)
     {
@@ -56,6 +57,9 @@ void summariseProbe(FieldData& field, size_t probe)
                 distances[y * size + x] = distance;
                 nearest = std::min(nearest, distance);
                 if (q > 0.0f) farthest = std::max(farthest, distance);
+                const double weight = std::pow(1.0 + double(glm::dot(uv, uv)), -1.5);
+                solid += weight;
+                if (q > 0.0f) inverse += weight / distance;
             }
         std::nth_element(distances.begin(), distances.begin() + ptrdiff_t(distances.size() / 2), distances.end());
         const float median = std::min(distances[distances.size() / 2], field.info.diagonal);
@@ -63,6 +67,7 @@ void summariseProbe(FieldData& field, size_t probe)
     }
     header.freeRadius = nearest;
     header.farthest = farthest;
+    header.harmonic = float(solid / std::max(inverse, 1e-6 * solid)); // a million field units where there is nothing but sky
 }
 
 void attachOctree(FieldData& field, const Octree& octree)

@@ -30,7 +30,7 @@ struct ProbeHeader
     vec3 influenceLow;  // half extents of the influence box toward -xyz, field units: median distance per cube face
     float farthest;     // field units; the largest finite distance in the map
     vec3 influenceHigh; // the same toward +xyz
-    float unused;
+    float harmonic;     // field units; harmonic mean of the distances over all directions, without sky; 0: not known (older files)
 };
 SCONCE_CHECK_SIZE(ProbeHeader, 48);
 

@@ -133,10 +133,16 @@ SCONCE_FN bool canGather(vec3 point, vec3 normal)
     return length2 > real(1e-12) && length2 + dot(point, point) < real(1e18);
 }
 
+// 2 to 4, squared or not, were tried: all mend a probe in a gap, this one costs the others least (docs/light.md).
+SCONCE_CONST real kCarried = real(4.0);
+
 /// The say of a probe in the light at a surface point, above 0: all are summed before they are divided by, so that a leaf behind a wall, whose
 /// probes are all hidden, has none. Wrapped cosine towards the probe (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with
 /// Ray-Traced Irradiance Fields"), Chebyshev visibility from the distance moments (McGuire et al. 2017, section 5.2; cubed as in the former),
-/// nothing from a probe whose map shows a surface before the point, and the inverse square of the distance, since the probes are no grid.
+/// nothing from a probe whose map shows a surface before the point, and the inverse square of the distance, since the probes are no grid. A probe
+/// close to surfaces, in a gap above a lamp say, has light that is no other place's: beyond kCarried times the harmonic mean of the distances that it
+/// sees its say falls with the fourth power again (Ward, Rubinstein, Clear 1988, "A Ray Tracing Solution for Diffuse Interreflection", measure
+/// by that mean how far irradiance holds).
 /// Cost: 5 reads.
 SCONCE_FN real weightOfProbe(uint probe, vec3 point, vec3 normal)
 {
@@ -156,6 +162,9 @@ SCONCE_FN real weightOfProbe(uint probe, vec3 point, vec3 normal)
         weight *= chebyshev * chebyshev * chebyshev;
     }
     if (hiddenFromProbe(probe, -toProbe)) weight = real(0.0);
+    real harmonic = real(probeHeader(probe).harmonic);
+    real carried = harmonic > real(0.0) ? distance2 / (kCarried * kCarried * harmonic * harmonic) : real(0.0);
+    weight /= real(1.0) + carried * carried;
     return max(weight, real(1e-6)) / (distance2 + real(field.voxel) * real(field.voxel));
 }
 

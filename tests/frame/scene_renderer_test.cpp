@@ -203,6 +203,39 @@ TEST_F(SceneRendererTest, ObjectThatTheLightFieldDoesNotKnowIsLitAndReflects)
     }
 }
 
+TEST_F(SceneRendererTest, AProbeInAGapAboveALampDoesNotLightTheRoom)
+{
+    Scene scene;
+    scene.name = "lamps";
+    MeshBuilder mesh(scene);
+    const uint32_t wall = mesh.material("wall", vec3(0.7f)), lamp = mesh.emitter("lamp", vec3(12.0f));
+    mesh.box(vec3(-4, -0.1f, -4), vec3(4, 0, 4), wall);
+    mesh.box(vec3(-4, 3, -4), vec3(4, 3.1f, 4), wall);
+    for (const float side : {-4.1f, 4.0f})
+    {
+        mesh.box(vec3(side, 0, -4), vec3(side + 0.1f, 3, 4), wall);
+        mesh.box(vec3(-4, 0, side), vec3(4, 3, side + 0.1f), wall);
+    }
+    for (const float x : {-1.75f, 1.75f})
+        for (const float z : {-1.75f, 1.75f}) mesh.box(vec3(x - 0.2f, 2.9f, z - 0.2f), vec3(x + 0.2f, 2.905f, z + 0.2f), lamp);
+    mesh.camera("view", vec3(0, 1.7f, 3.8f), vec3(0, 1.2f, 0), 63.0f);
+    std::vector<vec3> probes = {{-2.6f, 1.7f, 2.5f}, {2.3f, 1.5f, -2.7f},  {2.6f, 1.5f, 3.0f}, {3.0f, 1.3f, -0.4f},
+                                {-2.3f, 1.4f, 0.2f}, {-0.3f, 1.3f, -2.3f}, {1.2f, 1.3f, 0.4f}};
+    RenderSettings settings = settingsOf(kSide);
+    settings.areaSamples = 64;
+    double means[2] = {};
+    for (double& mean : means)
+    {
+        const auto field = bakeField(scene, probes, 128, 4);
+        ASSERT_TRUE(field) << field.error().message;
+        const auto frame = drawWith(*field, scene, settings);
+        ASSERT_TRUE(frame) << frame.error().message;
+        for (const vec3& light : frame->diffuseIndirect) mean += light.y;
+        probes.insert(probes.end(), {{1.47f, 2.963f, -1.42f}, {-1.92f, 2.949f, -1.98f}, {2.0f, 2.939f, 1.7f}});
+    }
+    EXPECT_NEAR(means[1] / means[0], 1.0, 0.1);
+}
+
 TEST_F(SceneRendererTest, SameFrameTwiceIsTheSameToTheBit)
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
