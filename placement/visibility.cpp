@@ -1,5 +1,5 @@
-#include "scene/closest_point.h"
 #include "placement/visibility.h"
+#include "scene/closest_point.h"
 
 #include <algorithm>
 #include <cmath>

@@ -48,7 +48,8 @@ struct BakeReport
 /// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then by its own irradiance, bounce
 /// by bounce. A probe's maps before the first bounce don't depend on the other probes. Same input, same driver: same bytes.
 /// Specular reflection is baked as diffuse reflection of the same strength: a probe's texel holds one radiance for all directions.
-/// @param probes  world, metres; at least one, at most 65,535. One that stands on a surface, or nearer to it than 2e-4 of the diagonal, is moved
+/// @param probes  world, metres; at least one, at most 65,535. One that stands on a surface, or nearer to it than 2e-4 of the diagonal, is
+/// moved
 ///                off it (runtime/probe_clearance.h) where the probes are no grid
 /// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, cancelled.
 Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,

@@ -15,8 +15,8 @@ gpu::LightFieldInfo fieldSpace(const Bounds& sceneBounds);
 /// the bounding planes of the cells over it, nor falls behind their far bounds (face_chain.h). CPU twin of shaders/bake_chain.comp.
 void buildChain(uint32_t* faceWords, uint32_t faceSize);
 
-/// Fills freeRadius, farthest, the harmonic mean of the distances and the influence box (median distance per cube face, Wang et al. 2019, section 4.1) of one probe from its
-/// distance words; its centre is kept.
+/// Fills freeRadius, farthest, the harmonic mean of the distances and the influence box (median distance per cube face, Wang et al. 2019,
+/// section 4.1) of one probe from its distance words; its centre is kept.
 void summariseProbe(FieldData& field, size_t probe);
 
 /// Puts a built octree into the field and its layout into the field's info.

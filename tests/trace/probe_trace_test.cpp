@@ -31,8 +31,8 @@ template <class Real> std::vector<TracedRay> traceAll(const Traced& traced, cons
     std::vector<TracedRay> out(set.size());
     for (size_t i = 0; i < set.size(); ++i)
     {
-        const auto r =
-            text.traceRay((V(set.origins[i]) - V(traced.field.info.origin)) / Real(traced.field.info.scale), V(set.directions[i]), V(set.normals[i]));
+        const auto r = text.traceRay((V(set.origins[i]) - V(traced.field.info.origin)) / Real(traced.field.info.scale),
+                                     V(set.directions[i]), V(set.normals[i]));
         out[i] = {TraceStatus(r.status), float(r.t * Real(traced.field.info.scale)), uint32_t(r.handoffs), uint32_t(r.distanceReads),
                   uint32_t(r.indexReads)};
     }
