@@ -120,17 +120,18 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData f
 {
     if (!how.opponent && field.info.chart != gpu::kChartCube)
         return Error{ErrorCode::badInput, "Tracer ours needs cube probes, these are octahedral. Bake with --chart cube."};
+    if (how.octahedral != 0 && how.distanceBits != Tracer().distanceBits)
+        return Error{ErrorCode::badArgument, "distanceBits is of the texels of cube faces; leave octahedral out, or distanceBits."};
     std::unique_ptr<TracedMethod> made(new TracedMethod(gpu));
     made->label = std::move(label);
     made->how = how;
     Result<FieldData> data = std::move(field);
     if (how.opponent)
         data = baselineField(std::move(*data), *how.opponent, how.lowFactor);
+    else if (how.octahedral != 0)
+        data = octahedralField(*data, how.octahedral);
     else
-    {
         data = narrowedField(std::move(*data), how.distanceBits);
-        if (data && how.octahedral != 0) data = octahedralField(*data, how.octahedral);
-    }
     if (!data) return data.error();
     made->field = std::move(*data);
     auto onDevice = LightField::create(gpu, made->field, how.quality);
