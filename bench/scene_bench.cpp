@@ -269,9 +269,6 @@ Status SceneBench::prepare(const Progress& progress)
 {
     if (rays) return success();
     if (auto status = makeTruth(); !status) return status;
-    auto uploaded = DeviceScene::create(gpu, desc.scene, fieldSpace(desc.scene.bounds()), {}, progress);
-    if (!uploaded) return uploaded.error();
-    deviceScene.emplace(std::move(*uploaded));
     auto clock = GpuTimer::create(gpu, kTimerScopes);
     if (!clock) return clock.error();
     timer.emplace(std::move(*clock));
@@ -279,6 +276,20 @@ Status SceneBench::prepare(const Progress& progress)
     if (!set) return set.error();
     rays = std::move(*set);
     return saveRays(*rays, desc.folder / "replay" / (desc.name + ".rays"));
+}
+
+/// The scene as frames of a kind need it; made once.
+Result<const DeviceScene*> SceneBench::sceneOf(const IndirectEffects& effects, const Progress& progress)
+{
+    std::optional<DeviceScene>& scene = deviceScenes[effects.fieldShadows ? 1 : 0];
+    if (!scene)
+    {
+        const DeviceSceneDesc wanted = sceneForFrames({.fieldShadows = effects.fieldShadows});
+        auto uploaded = DeviceScene::create(gpu, desc.scene, fieldSpace(desc.scene.bounds()), wanted, progress);
+        if (!uploaded) return uploaded.error();
+        scene.emplace(std::move(*uploaded));
+    }
+    return &*scene;
 }
 
 uint64_t SceneBench::bytesOf(const PointSettings& settings)
@@ -315,7 +326,9 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
         frame.glossyShader = traceGlossyPass(*opponent);
         frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
     }
-    auto renderer = SceneRenderer::create(gpu, *deviceScene, live.tracer->lightField(), frame);
+    auto scene = sceneOf(frame.effects, progress);
+    if (!scene) return scene.error();
+    auto renderer = SceneRenderer::create(gpu, **scene, live.tracer->lightField(), frame);
     if (!renderer) return renderer.error();
     live.renderer = std::move(*renderer);
     return live;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -92,6 +93,7 @@ private:
     Result<BenchProbes> probesFor(const PointSettings& settings, const Progress& progress);
     Result<FieldData> fieldFor(const PointSettings& settings, Json& cost, const Progress& progress);
     Status makeTruth();
+    Result<const DeviceScene*> sceneOf(const IndirectEffects& effects, const Progress& progress);
     Result<Json> errorsOf(const ImageSet& picture) const;
     ReferenceSettings pathSettings(const PlannedPoint& point) const;
     Status writeReferencePictures();
@@ -106,7 +108,7 @@ private:
     ImageSet referenceImages;
     std::optional<RayScene> truth;
     std::optional<RaySet> rays;
-    std::optional<DeviceScene> deviceScene;
+    std::array<std::optional<DeviceScene>, 2> deviceScenes; // whose samples of area light have maps, and have none
     std::optional<GpuTimer> timer;
 };
 

@@ -62,7 +62,7 @@ std::vector<Knob> makeKnobs()
 {
     const std::vector<std::string_view> ours{"ours"}, placed{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
         opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang"}, paths{kPathTracer},
-        lit{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", kPathTracer};
+        fields{"ours", "ours-grid"}, lit{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", kPathTracer};
     using enum Stage;
     return {
         knob("probes", place, placed, {}, "probes", SCONCE_FIELD(probes)),
@@ -82,6 +82,7 @@ std::vector<Knob> makeKnobs()
         knob("rays", frame, placed, {"1", "2", "4", "8"}, "rays a pixel", SCONCE_FIELD(frame.glossyRays)),
         knob("trace every", frame, placed, {"1", "2", "4", "8", "16"}, "pixels", SCONCE_FIELD(frame.traceEvery)),
         knob("area samples", frame, placed, {"2", "8", "32"}, "samples", SCONCE_FIELD(frame.areaSamples)),
+        knob("area shadows", frame, fields, {"maps", "field"}, "", SCONCE_FIELD(frame.effects.fieldShadows)),
         knob("denoise", frame, placed, {"on", "off"}, "", SCONCE_FIELD(frame.effects.denoise)),
         knob("temporal", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.temporal)),
         knob("traced diffuse", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.tracedDiffuse)),

@@ -21,8 +21,10 @@ std::string settingsFault(const DeviceSceneDesc& desc)
         const char* name;
         uint32_t value, low, high;
     };
+    const bool maps = desc.light.areaShadows;
     for (const Range& r : {Range{"maxTextureSize", desc.maxTextureSize, 1, 4096},
-                           Range{"emitterSamples", desc.light.emitterSamples, 0, 340}, Range{"skySamples", desc.light.skySamples, 0, 1024},
+                           Range{"emitterSamples", desc.light.emitterSamples, 0, maps ? 340u : 65536u},
+                           Range{"skySamples", desc.light.skySamples, 0, maps ? 1024u : 65536u},
                            Range{"sunShadow", desc.light.sunShadow, 256, 8192}, Range{"pointShadow", desc.light.pointShadow, 64, 2048},
                            Range{"emitterShadow", desc.light.emitterShadow, 32, 1024}, Range{"skyShadow", desc.light.skyShadow, 128, 4096}})
         if (r.value < r.low || r.value > r.high)
@@ -118,7 +120,13 @@ VkSamplerCreateInfo samplerInfo(VkFilter filter, VkSamplerAddressMode wrap)
 DeviceSceneDesc sceneForFrames(const IndirectEffects& effects)
 {
     DeviceSceneDesc desc;
-    if (!effects.diffuse || effects.tracedDiffuse) desc.light.emitterSamples = desc.light.skySamples = 0;
+    if (!effects.diffuse || effects.tracedDiffuse)
+        desc.light.emitterSamples = desc.light.skySamples = 0;
+    else if (effects.fieldShadows)
+    {
+        desc.light.areaShadows = false;
+        desc.light.emitterSamples = desc.light.skySamples = kTracedLightSamples;
+    }
     return desc;
 }
 
@@ -214,8 +222,8 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
     };
-    if (lightList.lights
-            .empty()) // the bindings of kinds that a scene lacks are another kind's maps, which nothing reads; these where all lack
+    const bool none = std::ranges::all_of(kinds, [](const Kind& kind) { return kind.layers == 0; });
+    if (none) // the bindings of kinds that a scene lacks are another kind's maps, which nothing reads; these where all lack
     {
         auto maps = depthArray(gpu, 1, 1, VK_FORMAT_D16_UNORM, "The stand-in for shadow maps");
         if (!maps) return maps.error();
@@ -256,6 +264,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         if (!report(progress, "shadow maps", double(i) / double(lightList.lights.size())))
             return Error{ErrorCode::cancelled, "The bake was stopped while rendering shadow maps"};
         const gpu::GpuLight& light = lightList.lights[i];
+        if (light.shadowLayer == kNoShadowMap) continue;
         const Kind& kind = kinds[light.type == gpu::kLightDirectional ? 0
                                  : light.type == gpu::kLightSky       ? 1
                                  : light.type == gpu::kLightEmitter   ? 3

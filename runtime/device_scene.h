@@ -18,8 +18,10 @@ struct DeviceSceneDesc
     LightSettings light;
 };
 
+inline constexpr uint32_t kTracedLightSamples = 1024; // of the emitters, and of the sky, where rays shadow them: 112 bytes each, and no map
+
 /// What frames with these effects need of a scene: without diffuse light, or where rays give it, no samples of emitters and sky, and so no
-/// shadow maps of them. A bake needs them always.
+/// shadow maps of them; with `fieldShadows` more samples, without maps. A bake needs them always.
 DeviceSceneDesc sceneForFrames(const IndirectEffects& effects);
 
 /// A scene on the device: triangles, materials, textures, lights, and shadow maps rendered once. Move-only; destroy it after the GPU has

@@ -15,6 +15,8 @@ struct IndirectEffects
 {
     bool diffuse = true;        // diffuse light
     bool tracedDiffuse = false; // by traced rays, emitters and sky seen by them; else prefiltered irradiance, which has neither
+    bool fieldShadows = false;  // emitters' and the sky's samples shadowed by rays through the light field, not by maps; nothing where rays
+                                // give diffuse light
     bool rough = true;          // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow
     bool glossy = true;         // reflections by traced rays
     bool mirror = true;         // the one ray of perfect mirrors

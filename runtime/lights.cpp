@@ -98,8 +98,7 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         light.intensity = emitter.emission;
         light.area = float(emitter.area / (count * emitter.share));
         carried += double(light.area) * luminance(emitter.emission);
-        light.shadowLayer = int(list.emitterLayers);
-        list.emitterLayers += 6;
+        light.shadowLayer = kNoShadowMap;
         list.lights.push_back(light);
         ++list.header.emitterCount;
     }
@@ -161,9 +160,24 @@ void addSky(const Scene& scene, uint32_t count, LightList& list)
         light.type = gpu::kLightSky;
         light.direction = vec3(r * std::cos(angle), y, r * std::sin(angle));
         light.intensity = scene.sky * (4.0f * kPi / float(count));
-        light.shadowLayer = int(list.skyLayers++);
+        light.shadowLayer = kNoShadowMap;
         list.lights.push_back(light);
         ++list.header.skyCount;
+    }
+}
+
+/// Gives the emitters' and the sky's entries their layers.
+void addAreaShadows(LightList& list)
+{
+    for (gpu::GpuLight& light : list.lights)
+    {
+        if (light.type == gpu::kLightEmitter)
+        {
+            light.shadowLayer = int(list.emitterLayers);
+            list.emitterLayers += 6;
+        }
+        else if (light.type == gpu::kLightSky)
+            light.shadowLayer = int(list.skyLayers++);
     }
 }
 
@@ -176,6 +190,7 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
     addDelta(scene, space, list);
     addEmitters(scene, space, settings.emitterSamples, list);
     addSky(scene, settings.skySamples, list);
+    if (settings.areaShadows) addAreaShadows(list);
     list.settings = settings;
     const auto limit = [](uint32_t& size, uint32_t layers, uint32_t texelBytes)
     {

@@ -15,6 +15,7 @@ struct LightSettings
 {
     uint32_t emitterSamples = 64; // patches of emissive surfaces, 0..340; bake time and shadow memory grow with it, noise falls
     uint32_t skySamples = 48;     // directions of the sky, 0..1024; the same
+    bool areaShadows = true;      // maps for both; without, they cost no memory, and there may be 65,536 of either
     uint32_t sunShadow = 4096;    // texels a side of a directional light's map, 256..8192
     uint32_t pointShadow = 512;   // texels a side of a point light's six faces, 64..2048
     uint32_t emitterShadow = 256; // the same for emitter samples, 32..1024
@@ -29,6 +30,7 @@ struct LightList
     uint32_t sunLayers = 0, skyLayers = 0, pointLayers = 0, emitterLayers = 0;
     LightSettings settings; // with the sizes of maps halved until each kind takes at most kShadowBytes
 };
+inline constexpr int kNoShadowMap = -1; // GpuLight::shadowLayer of a sample that rays shadow
 inline constexpr uint64_t kShadowBytes = uint64_t(128) << 20;
 
 /// Delta lights as they are. Emitters: stratified in the scene's order, so that the same scene gives the same list; half by power (area

@@ -1,5 +1,6 @@
 #include "runtime/scene_renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -7,6 +8,7 @@
 #include "scene/camera_check.h"
 
 #include "spirv/area_light_comp.h"
+#include "spirv/area_light_field_comp.h"
 #include "spirv/compose_comp.h"
 #include "spirv/direct_comp.h"
 #include "spirv/gbuffer_frag.h"
@@ -81,14 +83,15 @@ mat4 clipFromWorld(const Camera& camera, const CameraBasis& basis)
 } // namespace
 
 Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
-                               uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const uint32_t> constants)
+                               uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const uint32_t> constants,
+                               VkDescriptorSetLayout third)
 {
     auto made = makeFrameSet(gpu, frameBlock, extra);
     if (!made) return made.error();
     set = std::move(*made);
     writeInputs(set, gBuffer);
-    const VkDescriptorSetLayout layouts[] = {first, set.layout()};
-    auto built = Pipeline::compute(gpu, shader, layouts, pushBytes, constants);
+    const VkDescriptorSetLayout layouts[] = {first, set.layout(), third};
+    auto built = Pipeline::compute(gpu, shader, std::span(layouts).first(third ? 3 : 2), pushBytes, constants);
     if (!built) return built.error();
     pipeline = std::move(*built);
     return success();
@@ -183,8 +186,17 @@ Status SceneRenderer::makeDiffuse()
         const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                    {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                    {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-        const uint32_t tiled = indirect->tiles() ? 1u : 0u;
-        if (auto s = makePass(areaPass, areaSet, area_light_comp, bindings, sizeof(AreaPush), scene.layout(), std::span(&tiled, 1)); !s)
+        const bool traced = settings.effects.fieldShadows;
+        std::vector<uint32_t> constants;
+        if (traced)
+        {
+            const auto ofField = field.constants();
+            constants.assign(ofField.begin(), ofField.end());
+        }
+        constants.push_back(indirect->tiles() ? 1u : 0u);
+        if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings, sizeof(AreaPush),
+                              scene.layout(), constants, traced ? field.layout() : VK_NULL_HANDLE);
+            !s)
             return s;
         areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
@@ -236,6 +248,11 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const Dev
 {
     if (settings.glossyRays < 1 || settings.glossyRays > 256)
         return Error{ErrorCode::badArgument, "glossy rays a pixel " + std::to_string(settings.glossyRays) + " must be 1..256"};
+    const bool mapless = std::ranges::any_of(scene.lights().lights, [](const gpu::GpuLight& l) { return l.shadowLayer == kNoShadowMap; });
+    if (mapless && settings.effects.diffuse && !settings.effects.tracedDiffuse && !settings.effects.fieldShadows)
+        return Error{ErrorCode::badArgument,
+                     "The scene's emitters and sky have no shadow maps; make it with sceneForFrames() of the same effects, or ask for "
+                     "fieldShadows"};
     std::unique_ptr<SceneRenderer> made(new SceneRenderer(gpu, scene, field, settings));
     if (auto status = made->make(); !status) return status.error();
     return made;
@@ -342,17 +359,17 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 
     indirect->record(cmd, view, timer);
 
-    const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name)
+    const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, bool withField = false)
     {
         memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         if (timer) timer->begin(cmd, name);
-        const VkDescriptorSet sets[] = {scene.descriptorSet(), set.handle()};
-        pipeline.bind(cmd, sets);
+        const VkDescriptorSet sets[] = {scene.descriptorSet(), set.handle(), field.descriptorSet()};
+        pipeline.bind(cmd, std::span(sets).first(withField ? 3 : 2));
     };
     if (areaPass)
     {
-        begin(areaPass, areaSet, "area light");
+        begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
         areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
         dispatchTiles(gpu, cmd, indirect->tiles(), gpu::kTermDiffuse, settings.width, settings.height);
         if (timer) timer->end(cmd);

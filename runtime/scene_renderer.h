@@ -60,7 +60,7 @@ private:
     }
     Status make();
     Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra, uint32_t pushBytes,
-                    VkDescriptorSetLayout first, std::span<const uint32_t> constants);
+                    VkDescriptorSetLayout first, std::span<const uint32_t> constants, VkDescriptorSetLayout third = VK_NULL_HANDLE);
     Status makeDiffuse();
     Status makeCompose();
     bool hasAreaLight() const;

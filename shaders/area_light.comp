@@ -1,12 +1,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#ifdef SCONCE_FIELD_SHADOWS
+#define SCONCE_FIELD_SET 2
+#include "light_field.glsl"
+#define SCONCE_HAS_CHART
+#define SCONCE_TILE_CONSTANT 2 // after the field's constants
+#endif
 #include "lights.glsl"
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
 
-// Diffuse light straight from emitters and from the sky, by some of their samples and these samples' shadow maps, added to the light that
-// surfaces reflect (the probes' irradiance). Each pixel takes another subset; the filter after it blends them.
+// Diffuse light straight from emitters and from the sky, by some of their samples, added to the light that surfaces reflect (the probes'
+// irradiance). A sample is shadowed by its map or, with SCONCE_FIELD_SHADOWS, by a ray through the light field, so that the list of samples
+// can be long. Each pixel takes another subset; the filter after it blends them.
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 4) uniform texture2D gGeometricNormal;
@@ -18,6 +25,22 @@ layout(scalar, push_constant) uniform Push
     uint samples; // of the emitters, and as many of the sky, a pixel
 };
 
+#ifdef SCONCE_FIELD_SHADOWS
+/// As lightAt() of lights.glsl.
+LightSample tracedLightAt(uint i, Pixel p, vec3 point, vec3 geometric)
+{
+    LightSample s = unshadowedLight(i, point);
+    if (dot(geometric, s.toLight) <= 0.0 || dot(p.normal, s.toLight) <= 0.0 || all(equal(s.irradiance, vec3(0.0))))
+    {
+        s.irradiance = vec3(0.0);
+        return s;
+    }
+    float far = lights[i].type == kLightSky ? 1e30 : distance(lights[i].position, point) * scale;
+    if (!lightReaches(p.position + frame.normalOffset * geometric, s.toLight, far, geometric)) s.irradiance = vec3(0.0);
+    return s;
+}
+#endif
+
 /// Mean over a subset of the lights [first, first + count), scaled to all of them, of their irradiance times the cosine.
 vec3 someLights(Pixel p, vec3 point, vec3 geometric, uint first, uint count, uint stream, ivec2 at)
 {
@@ -28,7 +51,11 @@ vec3 someLights(Pixel p, vec3 point, vec3 geometric, uint first, uint count, uin
     for (uint i = 0u; i < taken; ++i)
     {
         uint pick = min(uint((float(i) + start) / float(taken) * float(count)), count - 1u);
+#ifdef SCONCE_FIELD_SHADOWS
+        LightSample s = tracedLightAt(first + pick, p, point, geometric);
+#else
         LightSample s = lightAt(first + pick, point, geometric);
+#endif
         sum += max(dot(p.normal, s.toLight), 0.0) * s.irradiance;
     }
     return sum * (float(count) / float(taken));

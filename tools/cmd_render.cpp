@@ -24,6 +24,8 @@ const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_i
                                                "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
 
 constexpr const char *kIrradiance = "irradiance", *kTraced = "traced"; // of --diffuse
+constexpr uint32_t kTracedAreaSamples = 2;                             // of a frame's rays, where each is traced
+constexpr const char *kMaps = "maps", *kField = "field";               // of --area-shadows
 
 struct RenderOptions
 {
@@ -35,16 +37,15 @@ struct RenderOptions
     uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
     std::optional<float> roughness;
     float raysBelow = gpu::kRaysBelow;
-    uint32_t traceEvery = 1;
+    uint32_t traceEvery = 1, areaSamples = 0; // 0: by --samples
     bool noDenoise = false, temporal = false;
-    std::string diffuse = kIrradiance;
+    std::string diffuse = kIrradiance, areaShadows = kMaps;
 };
 
 /// What --quality says and the command line doesn't.
 Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tracer)
 {
     settings.glossyRays = options.samples;
-    settings.areaSamples *= options.samples;
     const Result<std::optional<PointSettings>> quality = options.quality.load();
     if (!quality) return quality.error();
     if (*quality)
@@ -52,13 +53,16 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         const RenderSettings& frame = (*quality)->frame;
         tracer = (*quality)->quality;
         options.quality.take("--samples", settings.glossyRays, frame.glossyRays);
-        options.quality.take("--samples", settings.areaSamples, frame.areaSamples);
+        if (options.areaSamples == 0) options.quality.take("--samples", options.areaSamples, frame.areaSamples);
         options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
         options.quality.take("--temporal", options.temporal, frame.effects.temporal);
         options.quality.take("--diffuse", options.diffuse, std::string(frame.effects.tracedDiffuse ? kTraced : kIrradiance));
+        options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
     }
+    const uint32_t aSample = options.areaShadows == kField ? kTracedAreaSamples : settings.areaSamples;
+    settings.areaSamples = options.areaSamples != 0 ? options.areaSamples : aSample * options.samples;
     settings.raysBelow = options.raysBelow;
     settings.traceEvery = options.traceEvery;
     return success();
@@ -149,6 +153,9 @@ int runRender(RenderOptions options, const Context& context)
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
+    if (options.areaShadows == kField && options.tracer != "ours")
+        return fail(ErrorCode::badArgument,
+                    "--area-shadows field is traced by our tracer; leave it out, or --tracer " + options.tracer + ".");
     const Result<EffectPlan> plan = choosePlan(options, *scene);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
@@ -173,6 +180,7 @@ int runRender(RenderOptions options, const Context& context)
     settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
     settings.effects.tracedDiffuse = options.diffuse == kTraced;
+    settings.effects.fieldShadows = options.areaShadows == kField;
     Result<DeviceScene> deviceScene =
         DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects), consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
@@ -227,6 +235,7 @@ int runRender(RenderOptions options, const Context& context)
     json["trace_every"] = settings.traceEvery;
     json["rays_below"] = settings.raysBelow;
     json["diffuse"] = options.diffuse;
+    json["area_shadows"] = options.areaShadows;
     json["temporal"] = settings.effects.temporal;
     json["frames"] = options.frames;
     json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
@@ -279,13 +288,25 @@ void addRenderCommand(CLI::App& app, Context& context)
                      "--samples cosine-weighted rays a pixel, filtered (default: irradiance)")
         ->check(unlisted(CLI::IsMember({kIrradiance, kTraced})))
         ->type_name("irradiance|traced");
+    command
+        ->add_option(
+            "--area-shadows", options->areaShadows,
+            "maps: 64 samples of the emitters and 48 of the sky, shadowed by maps; field: 1024 of either, shadowed by rays through the "
+            "light field, without a map; nothing where --diffuse is traced (default: maps)")
+        ->check(unlisted(CLI::IsMember({kMaps, kField})))
+        ->type_name("maps|field");
     addTracer(command, options->tracer);
     command
-        ->add_option("--samples", options->samples,
-                     "Glossy and diffuse rays a pixel, and eight times as many samples of emitters and of the sky; noise falls with the "
-                     "square root, "
-                     "time grows in proportion (default: 1; range: 1 to 64)")
+        ->add_option(
+            "--samples", options->samples,
+            "Glossy and diffuse rays a pixel; noise falls with the square root, time grows in proportion (default: 1; range: 1 to 64)")
         ->check(unlisted(CLI::Range(1u, 64u)))
+        ->type_name("N");
+    command
+        ->add_option("--area-samples", options->areaSamples,
+                     "Samples of the emitters, and as many of the sky, a pixel (default: 8 for each of --samples, 2 with --area-shadows "
+                     "field; range: 1 to 1024)")
+        ->check(unlisted(CLI::Range(1u, 1024u)))
         ->type_name("N");
     command
         ->add_option(

@@ -49,4 +49,17 @@ SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction, vec3 normal)
     return answerOf(origin, direction, traceRay((origin - vec3(field.origin)) / real(field.scale), direction, normal));
 }
 
+/// Whether light that comes against `direction` (unit) from `distance` metres off, or further than the field goes, reaches a world-space point:
+/// a shadow ray. What the field shows within a 500th of its diagonal of the light is the light's own surface; a ray that no probe can answer
+/// is blocked. Cost: that of queryRay at most, and no radiance is read.
+SCONCE_FN bool lightReaches(vec3 point, vec3 direction, real distance_, vec3 normal)
+{
+    RayState r = startRay((point - vec3(field.origin)) / real(field.scale), direction, normal);
+    real last = distance_ / real(field.scale);
+    r.tMax = min(r.tMax, last);
+    int limit = turnLimit();
+    for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
+    return r.status == kMiss || (r.phase == kPhaseDone && r.t >= last - real(0.002) * real(field.diagonal));
+}
+
 SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction) { return queryRay(origin, direction, vec3(real(0.0))); }

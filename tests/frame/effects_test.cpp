@@ -152,6 +152,39 @@ TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
     EXPECT_EQ(sceneForFrames(settings.effects).light.emitterSamples, 0u) << "rays see emitters";
 }
 
+TEST_F(EffectsTest, ShadowRaysThroughTheFieldNeedNoMapsAndGiveTheSameLight)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    const auto field = bakeField(scene, kProbes, 128, 0);
+    ASSERT_TRUE(field) << field.error().message;
+    const auto light = LightField::create(gpu(), *field);
+    RenderSettings settings = settingsOf(64);
+    settings.areaSamples = 64;
+    double means[2] = {};
+    uint64_t bytes[2] = {};
+    for (const bool traced : {false, true})
+    {
+        settings.effects.fieldShadows = traced;
+        const auto device = DeviceScene::create(gpu(), scene, field->info, sceneForFrames(settings.effects));
+        ASSERT_TRUE(device) << device.error().message;
+        bytes[traced] = device->deviceBytes();
+        auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
+        ASSERT_TRUE(renderer) << renderer.error().message;
+        const auto frame = (*renderer)->render(scene.cameras.front());
+        ASSERT_TRUE(frame) << frame.error().message;
+        for (const vec3& pixel : frame->diffuseIndirect) means[traced] += pixel.g;
+        if (!traced) continue;
+        settings.effects.fieldShadows = false;
+        const auto refused = SceneRenderer::create(gpu(), *device, *light, settings);
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find("no shadow maps"), std::string::npos);
+    }
+    EXPECT_NEAR(means[1] / means[0], 1.0, 0.03);
+    const LightSettings maps;
+    EXPECT_GT(bytes[0] - bytes[1], uint64_t(maps.emitterSamples) * 6 * maps.emitterShadow * maps.emitterShadow * 4 / 2)
+        << "less 1024 entries of the list";
+}
+
 TEST_F(EffectsTest, AnEffectWhoseMapsAreNotThereIsRefusedWithASentence)
 {
     const Scene scene = *makeBuiltinScene("cornell");

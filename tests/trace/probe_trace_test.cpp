@@ -309,5 +309,59 @@ TEST(ProbeTrace, ThinSheetIsNotPassedFromEitherSide)
     EXPECT_LE(wrong, 100); // 0.5 %
 }
 
+/// Shares of shadow rays between surface points of the box, and out of it, that Embree answers otherwise: lit wrongly, dark wrongly.
+struct ShadowErrors
+{
+    double lit = 0.0, dark = 0.0;
+};
+
+ShadowErrors shadowErrors(bool outside)
+{
+    const Traced& box = cornell();
+    twin::LightFieldTwin<float> text(box.field, defaultQuality());
+    const float diagonal = glm::length(box.scene.bounds().high - box.scene.bounds().low);
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    const auto somewhere = [&] { return glm::normalize(vec3(normal(random), normal(random), normal(random))); };
+    ShadowErrors errors;
+    int asked = 0;
+    while (asked < 5000)
+    {
+        const vec3 eye = kCornellProbes[asked % kCornellProbes.size()];
+        const auto start = box.rays.closest(eye, somewhere()), end = box.rays.closest(eye, somewhere());
+        if (!start || !end) continue;
+        const vec3 side = glm::dot(start->geometricNormal, eye - start->position) < 0.0f ? -start->geometricNormal : start->geometricNormal;
+        const vec3 point = start->position + 1e-4f * diagonal * side;
+        vec3 direction = somewhere();
+        float far = 1e30f;
+        if (!outside)
+        {
+            far = glm::distance(point, end->position);
+            direction = (end->position - point) / far;
+        }
+        if (glm::dot(direction, side) < 0.05f || far < 0.05f * diagonal) continue;
+        ++asked;
+        const bool free = !box.rays.occluded(point, direction, outside ? 1e30f : far - 0.005f * diagonal);
+        const bool lit = text.lightReaches(point, direction, far, side);
+        errors.lit += lit && !free;
+        errors.dark += !lit && free;
+    }
+    errors.lit /= asked;
+    errors.dark /= asked;
+    return errors;
+}
+
+TEST(LightReaches, ShadowRaysBetweenSurfacesAndToTheSkyAgreeWithEmbree)
+{
+    for (const bool outside : {false, true})
+    {
+        const ShadowErrors errors = shadowErrors(outside);
+        RecordProperty(outside ? "sky, lit" : "surface, lit", std::to_string(errors.lit));
+        RecordProperty(outside ? "sky, dark" : "surface, dark", std::to_string(errors.dark));
+        EXPECT_LT(errors.lit, 0.005) << outside;
+        EXPECT_LT(errors.dark, 0.01) << outside;
+    }
+}
+
 } // namespace
 } // namespace sconce
