@@ -46,6 +46,26 @@ uint32_t octahedralWord(Text& text, const FaceTexel& from, uint32_t word, glm::v
 
 } // namespace
 
+FieldData octahedralCopy(const FieldData& faces, uint32_t size, uint32_t topLevel, uint32_t words)
+{
+    FieldData made;
+    made.info = faces.info;
+    made.info.chart = gpu::kChartOctahedral;
+    made.info.faceSize = made.resolution = size;
+    made.info.topLevel = topLevel;
+    made.info.wordsPerProbe = words;
+    made.probes = faces.probes;
+    made.irradiance = faces.irradiance;
+    made.prefiltered = faces.prefiltered;
+    made.octree = faces.octree;
+    made.bounces = faces.bounces;
+    made.sceneName = faces.sceneName;
+    made.effects = faces.effects;
+    made.distance.assign(size_t(words) * faces.probes.size(), 0);
+    if (!faces.radiance.empty()) made.radiance.assign(size_t(size) * size * faces.probes.size(), 0);
+    return made;
+}
+
 Result<FieldData> octahedralField(const FieldData& faces, uint32_t size)
 {
     if (faces.info.chart != gpu::kChartCube)
@@ -54,22 +74,8 @@ Result<FieldData> octahedralField(const FieldData& faces, uint32_t size)
     if (size == 0 || size % 64 != 0)
         return Error{ErrorCode::badArgument,
                      "Our tracer's octahedral maps need a multiple of 64 texels a side, not " + std::to_string(size) + "."};
-    FieldData made;
-    made.info = faces.info;
-    made.probes = faces.probes;
-    made.irradiance = faces.irradiance;
-    made.prefiltered = faces.prefiltered;
-    made.octree = faces.octree;
-    made.resolution = size;
-    made.bounces = faces.bounces;
-    made.sceneName = faces.sceneName;
-    made.effects = faces.effects;
-    made.info.chart = gpu::kChartOctahedral;
-    made.info.faceSize = size;
-    made.info.topLevel = coarsestLevel(size);
-    made.info.wordsPerProbe = chain_text::Text().chainWords(size, int(made.info.topLevel));
-    made.distance.assign(size_t(made.info.wordsPerProbe) * faces.probes.size(), 0);
-    if (!faces.radiance.empty()) made.radiance.assign(size_t(size) * size * faces.probes.size(), 0);
+    const uint32_t topLevel = coarsestLevel(size);
+    FieldData made = octahedralCopy(faces, size, topLevel, chain_text::Text().chainWords(size, int(topLevel)));
     const uint32_t faceSize = faces.info.faceSize;
     parallelFor(faces.probes.size(),
                 [&](size_t probe)

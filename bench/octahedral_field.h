@@ -14,4 +14,7 @@ namespace sconce
 /// Errors: badArgument (the size), badInput (not cube faces). Cost: 5 N^2 texels a probe, all cores.
 Result<FieldData> octahedralField(const FieldData& faces, uint32_t size);
 
+/// The same light field with octahedral maps of N x N texels that hold nothing yet: what does not depend on the chart is the faces' own.
+FieldData octahedralCopy(const FieldData& faces, uint32_t size, uint32_t topLevel, uint32_t wordsPerProbe);
+
 } // namespace sconce

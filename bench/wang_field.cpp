@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "bench/octahedral_field.h"
 #include "runtime/tracer_cpu.h"
 #include "svo/parallel.h"
 
@@ -132,23 +133,11 @@ Result<FieldData> wangField(const FieldData& faces)
     if (!std::has_single_bit(size) || size < 2 * kFewestCells)
         return Error{ErrorCode::badInput, "Tracer wang needs cube faces whose size is a power of two from 16; these have " +
                                               std::to_string(size) + " texels a side. Bake at a resolution that is a power of two."};
-    FieldData made;
-    made.info = faces.info;
-    made.probes = faces.probes;
-    made.irradiance = faces.irradiance;
-    made.prefiltered = faces.prefiltered;
-    made.octree = faces.octree;
-    made.resolution = size;
-    made.bounces = faces.bounces;
-    made.sceneName = faces.sceneName;
-    made.effects = faces.effects;
-    made.info.chart = gpu::kChartOctahedral;
-    made.info.topLevel = uint32_t(std::countr_zero(size / kFewestCells));
+    const uint32_t topLevel = uint32_t(std::countr_zero(size / kFewestCells));
     uint32_t words = 0;
-    for (uint32_t level = 0; level <= made.info.topLevel; ++level) words += (size >> level) * (size >> level);
-    made.info.wordsPerProbe = words;
-    made.distance.assign(size_t(words) * faces.probes.size(), kNothing);
-    if (!faces.radiance.empty()) made.radiance.assign(size_t(size) * size * faces.probes.size(), 0);
+    for (uint32_t level = 0; level <= topLevel; ++level) words += (size >> level) * (size >> level);
+    FieldData made = octahedralCopy(faces, size, topLevel, words);
+    std::ranges::fill(made.distance, kNothing);
     parallelFor(faces.probes.size(),
                 [&](size_t probe)
                 {
@@ -163,7 +152,7 @@ Result<FieldData> wangField(const FieldData& faces)
                                 faces.distance.data() + probe * faces.info.wordsPerProbe + face * (faces.info.wordsPerProbe / 6);
                             chain.bounds[size_t(face) * size * size + i] = radialBounds(text, from[i], i % size, i / size, size);
                         }
-                    for (uint32_t level = 1; level <= made.info.topLevel; ++level)
+                    for (uint32_t level = 1; level <= topLevel; ++level)
                     {
                         out += (size >> (level - 1)) * (size >> (level - 1));
                         chain = halved(chain);
