@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What two choices of a frame give for their time: below which roughness reflections are traced, and whether diffuse light is read or traced.
+# What two choices of a frame give for their time: below which roughness reflections are traced, and whether diffuse light is
+# read from irradiance, from patches, or traced.
 # Prints two Markdown tables. light_front.sh [SCENE[=COUNT]...] as bench/effects_table.sh, whose list is the default's.
 # Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180], FRAMES=N timed, the median counts [3], TURNS=N over all choices in
 # turn, the least time of each pass counts [3], RESOLUTION=texels [256], SPP=paths a pixel [256], OUT=folder [out/front].
@@ -11,7 +12,7 @@ out=${OUT:-out/front} size=${SIZE:-320x180} frames=${FRAMES:-3} turns=${TURNS:-3
 sconce=${SCONCE:-build/release/tools/sconce}
 list=("$@")
 [[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 sponza/Sponza.gltf=54 modern_hall/modern_hall.glb=50)
-below=(0.2 0.3 0.4 0.6 0.8 2) diffuse=(irradiance traced)
+below=(0.2 0.3 0.4 0.6 0.8 2) diffuse=(irradiance patches traced)
 mkdir -p "$out"
 for entry in "${list[@]}"; do
     scene=${entry%%=*} count=${entry#*=} camera=()
@@ -62,9 +63,10 @@ for scene in scenes:
         at = f"{scene}.below-{value}"
         print(f"| {scene} | {value} | {100 * load(at + '.0').get('traced_pixels', 0):.0f} % | {error(at + '.glossy_indirect')} | {error(at + '.beauty')} | "
               f"{least(at, ('glossy trace', 'glossy denoise')):.0f} | {least(at, every):.0f} |")
-print("\n| scene | irradiance, one frame | traced, one frame | irradiance, 16 frames over time | traced, 16 frames over time | ms, one frame: irradiance | traced |\n" + 7 * "|---" + "|")
+ways = ("irradiance", "patches", "traced")
+print("\n| scene | one frame: irradiance | patches | traced | 16 frames over time: irradiance | patches | traced | ms, one frame: irradiance | patches | traced |\n" + 10 * "|---" + "|")
 for scene in scenes:
-    cells = [error(f"{scene}.{kind}{time}.diffuse") for time in ("", ".time") for kind in ("irradiance", "traced")]
-    times = [f"{least(f'{scene}.{kind}', ('gather light', 'area light', 'diffuse trace', 'diffuse denoise')):.0f}" for kind in ("irradiance", "traced")]
+    cells = [error(f"{scene}.{kind}{time}.diffuse") for time in ("", ".time") for kind in ways]
+    times = [f"{least(f'{scene}.{kind}', ('gather light', 'area light', 'diffuse trace', 'diffuse denoise')):.0f}" for kind in ways]
     print(f"| {scene} | " + " | ".join(cells + times) + " |")
 P

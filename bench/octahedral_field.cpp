@@ -57,6 +57,7 @@ FieldData octahedralCopy(const FieldData& faces, uint32_t size, uint32_t topLeve
     made.probes = faces.probes;
     made.irradiance = faces.irradiance;
     made.prefiltered = faces.prefiltered;
+    made.patches = faces.patches;
     made.octree = faces.octree;
     made.bounces = faces.bounces;
     made.sceneName = faces.sceneName;

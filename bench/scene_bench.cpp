@@ -265,7 +265,7 @@ Status SceneBench::makeTruth()
     return success();
 }
 
-Status SceneBench::prepare(const Progress& progress)
+Status SceneBench::prepare()
 {
     if (rays) return success();
     if (auto status = makeTruth(); !status) return status;

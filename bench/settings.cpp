@@ -85,6 +85,7 @@ std::vector<Knob> makeKnobs()
         knob("area shadows", frame, fields, {"maps", "field"}, "", SCONCE_FIELD(frame.effects.fieldShadows)),
         knob("denoise", frame, placed, {"on", "off"}, "", SCONCE_FIELD(frame.effects.denoise)),
         knob("temporal", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.temporal)),
+        knob("patches", frame, fields, {"off", "on"}, "", SCONCE_FIELD(frame.effects.patches)),
         knob("traced diffuse", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.tracedDiffuse)),
         knob("rays below", frame, placed, {"0", "0.2", "1"}, "roughness", SCONCE_FIELD(frame.raysBelow)),
         knob("paths", frame, paths, {"1", "4", "16", "64"}, "paths a pixel", SCONCE_FIELD(paths)),

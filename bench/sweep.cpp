@@ -84,7 +84,7 @@ public:
         if (auto status = bench.makeReference(plan.front().settings.frame.roughness, within(referenceWeight)); !status) return status;
         done = referenceWeight;
         if (auto status = publish(); !status || pending.empty()) return status;
-        if (auto status = bench.prepare(within(0.0)); !status) return status;
+        if (auto status = bench.prepare(); !status) return status;
         if (pending.front() != 0)
             say(std::to_string(plan.size() - pending.size()) + " of " + std::to_string(plan.size()) + " points were measured before.");
         for (size_t at = 0; at < pending.size();)

@@ -275,6 +275,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
             if (spent.energy.back() < double(settings.converged) * with) break;
         }
         spent.bounceSeconds = watch.lap();
+        makePatches(bake.field, bake.surfaces, bake.emitted);
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};
         spent.prefilterSeconds = watch.lap();

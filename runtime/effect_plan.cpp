@@ -28,7 +28,7 @@ std::string costOf(std::string_view name)
     if (name == "emitters" || name == "sky") return "Shadow maps of its samples, and 8 look-ups a diffuse pixel; the bake's light.";
     if (name == "diffuse")
         return "A pass over diffuse tiles of at most 4 probes a look-up, a filter, " + bytes(2 * kImageBytes, "pixel") + ", " +
-               bytes(kIrradianceWordsPerProbe * sizeof(uint32_t), "probe") + ".";
+               bytes((kIrradianceWordsPerProbe + 2 * gpu::kPatches) * sizeof(uint32_t), "probe") + ".";
     if (name == "rough")
         return "12 reads more a probe of the diffuse pass, " + bytes(kImageBytes, "pixel") + ", " +
                bytes(gpu::kPrefilteredWords * sizeof(uint32_t), "probe") + ".";

@@ -15,6 +15,7 @@ struct IndirectEffects
 {
     bool diffuse = true;        // diffuse light
     bool tracedDiffuse = false; // by traced rays, emitters and sky seen by them; else prefiltered irradiance, which has neither
+    bool patches = false;       // read diffuse light from the probes' patches, not from prefiltered irradiance; nothing where it is traced
     bool fieldShadows = false;  // emitters' and the sky's samples shadowed by rays through the light field, not by maps; nothing where rays
                                 // give diffuse light
     bool rough = true;          // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow

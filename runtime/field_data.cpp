@@ -19,7 +19,7 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.distance = distanceBytes - bytes.normals;
     bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
     bytes.radiance = field.radiance.size() * sizeof(uint32_t) + bytes.prefiltered;
-    bytes.irradiance = field.irradiance.size() * sizeof(uint32_t);
+    bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t);
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
 }
@@ -52,7 +52,8 @@ size_t bytesPerProbe(uint32_t chart, uint32_t resolution)
     const uint32_t size = chartSize(chart, resolution);
     const size_t words =
         size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
-    return words * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+    const size_t patches = chart == gpu::kChartCube ? size_t(2) * gpu::kPatches : 0;
+    return (words + patches) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
 }
 
 } // namespace sconce

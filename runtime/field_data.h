@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct FieldData
                                        // reflect, without emission and sky, then
                                        // half mean distance | half variance of distance << 16, field units, cosine-power lobe
     std::vector<uint32_t> prefiltered; // [probe][kPrefilteredWords]: R11G11B10F radiance, layout: shaders/shared/prefiltered.h
+    std::vector<uint32_t> patches; // [probe][face][v][u][2], cube faces only: half q | normal 8+8 << 16, then R11G11B10F radiance without
+                                   // emission and sky, of what is seen through a window of kPatchSide^2 a face: see patchIrradiance()
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -36,8 +39,8 @@ struct FieldData
 /// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.
 struct FieldBytes
 {
-    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0;
-    size_t prefiltered = 0; // of the radiance
+    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches
+    size_t prefiltered = 0;                                                    // of the radiance
     size_t total() const { return distance + normals + radiance + irradiance + index; }
 };
 FieldBytes bytesByPart(const FieldData& field);
@@ -54,6 +57,11 @@ uint32_t chartSize(uint32_t chart, uint32_t resolution);
 
 /// Fills `prefiltered` from `radiance`; on any number of threads the same bytes. Cost: about 40 ms a probe and core.
 void prefilterRadiance(FieldData& field);
+
+/// Fills `patches`; on any number of threads the same bytes. Cost: a few ms a probe and core.
+/// @param surfaces  reflectance and shading normal a radiance texel, 0: sky
+/// @param emitted   emission a radiance texel, R11G11B10F; empty: the scene has no emitters
+void makePatches(FieldData& field, std::span<const uint32_t> surfaces, std::span<const uint32_t> emitted);
 
 /// Bytes that every further probe adds to a light field, index apart: what a budget of memory is divided by.
 size_t bytesPerProbe(uint32_t chart, uint32_t resolution);

@@ -24,6 +24,9 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
         return "one traced pixel of " + std::to_string(desc.traceEvery) + " must be of 1, 2, 4, 8 or 16";
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
+    if (desc.effects.diffuse && desc.effects.patches && !desc.effects.tracedDiffuse && !field.holdsPatches())
+        return "the light field holds no patches: it is older, or its maps are octahedral; bake it again with cube faces, or leave patches "
+               "out";
     const bool rays = desc.effects.glossy || desc.effects.mirror || (desc.effects.diffuse && desc.effects.tracedDiffuse);
     if (rays && !field.holdsRadiance() && !field.holdsPrefiltered())
         return "the light field holds no radiance; bake it with the effect 'glossy', or leave 'glossy', 'mirror' and traced diffuse light "
@@ -112,7 +115,7 @@ Status IndirectLight::makeGather()
     const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
     return makePass(gatherPass, gatherSet, gather_light_comp, {&diffuse, &rough},
-                    {gathersDiffuse() ? 1u : 0u, effects.rough ? 1u : 0u, gatherList()});
+                    {gathersDiffuse() ? 1u : 0u, effects.rough ? 1u : 0u, gatherList(), effects.patches ? 1u : 0u});
 }
 
 Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, const Desc& desc)

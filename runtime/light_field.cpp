@@ -22,8 +22,9 @@ struct FieldBlock // as shaders/light_field.glsl declares it
     VkDeviceAddress radiance;
     VkDeviceAddress irradiance;
     VkDeviceAddress prefiltered;
+    VkDeviceAddress patches;
 };
-static_assert(sizeof(FieldBlock) == 256);
+static_assert(sizeof(FieldBlock) == 264);
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
@@ -99,7 +100,8 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     };
     for (const Part& part :
          {Part{made.distance, field.distance, "probe distances"}, Part{made.radiance, field.radiance, "probe radiance"},
-          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"}})
+          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"},
+          Part{made.patches, field.patches, "probe patches"}})
     {
         if (part.words.empty()) continue;
         auto buffer = gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
@@ -138,7 +140,8 @@ Status LightField::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
+    const FieldBlock values{
+        fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(), patches.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 

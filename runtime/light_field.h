@@ -27,6 +27,7 @@ public:
     std::array<uint32_t, 2> constants() const;
     bool holdsRadiance() const { return radianceHeld; }              // as rays need it
     bool holdsPrefiltered() const { return prefiltered.size() > 0; } // as rough reflections need it
+    bool holdsPatches() const { return patches.size() > 0; }         // as diffuse light by patches needs them
     /// Takes effect for command buffers submitted after it. Not while the GPU reads the field.
     Status setQuality(const Quality& quality);
 
@@ -34,7 +35,7 @@ private:
     LightField() = default;
     Gpu* gpu = nullptr;
     gpu::LightFieldInfo fieldInfo{};
-    Buffer block, probes, distance, radiance, irradiance, prefiltered;
+    Buffer block, probes, distance, radiance, irradiance, prefiltered, patches;
     bool readsFarBounds = false, radianceHeld = false;
     GpuImage octree;
     DescriptorSet set;

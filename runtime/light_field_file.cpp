@@ -83,10 +83,11 @@ enum Section : uint32_t
     octree,
     octreeTexels,
     prefiltered, // since version 3
+    patches,     // since version 4
     sectionCount
 };
-constexpr const char* kSectionNames[sectionCount] = {"meta",       "info",   "probes",        "distance",   "radiance",
-                                                     "irradiance", "octree", "octree texels", "prefiltered"};
+constexpr const char* kSectionNames[sectionCount] = {"meta",       "info",   "probes",        "distance",    "radiance",
+                                                     "irradiance", "octree", "octree texels", "prefiltered", "patches"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader
@@ -146,10 +147,12 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         sizeof(OctreeHeader),
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
         product({n, gpu::kPrefilteredWords, 4}),
+        product({n, gpu::kPatches, 8}),
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
-        const bool optional = section == radiance || section == prefiltered; // what no surface of the scene calls for is left out
+        const bool optional =
+            section == radiance || section == prefiltered || section == patches; // what no surface of the scene calls for is left out
         if (expected[section] != rawBytes[section] && !(optional && rawBytes[section] == 0))
             return std::string("its section '") + kSectionNames[section] + "' has " + std::to_string(rawBytes[section]) +
                    " bytes where its info calls for another size";
@@ -478,6 +481,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
         bytesOf(treeHeader),
         std::as_bytes(std::span(field.octree.texels)),
         std::as_bytes(std::span(field.prefiltered)),
+        std::as_bytes(std::span(field.patches)),
     };
     uint64_t rawBytes[sectionCount], blockCount = 0;
     for (uint32_t section = 0; section < sectionCount; ++section)
@@ -547,6 +551,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     field.irradiance.resize(rawBytes[irradiance] / sizeof(uint32_t));
     field.octree.texels.resize(rawBytes[octreeTexels] / sizeof(uint16_t));
     field.prefiltered.resize(rawBytes[prefiltered] / sizeof(uint32_t));
+    field.patches.resize(rawBytes[patches] / sizeof(uint32_t));
     const std::pair<Section, std::span<std::byte>> parts[] = {
         {meta, std::as_writable_bytes(std::span(text))},
         {probes, std::as_writable_bytes(std::span(field.probes))},
@@ -555,6 +560,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {irradiance, std::as_writable_bytes(std::span(field.irradiance))},
         {octreeTexels, std::as_writable_bytes(std::span(field.octree.texels))},
         {prefiltered, std::as_writable_bytes(std::span(field.prefiltered))},
+        {patches, std::as_writable_bytes(std::span(field.patches))},
     };
     for (const auto& [section, raw] : parts)
         if (Status status = readInto(section, raw); !status) return status.error();

@@ -31,6 +31,8 @@ template <class Real> struct LightFieldTwin
     static constexpr uint kChartCube = gpu::kChartCube;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
+    static constexpr int kPatchSide = gpu::kPatchSide;
+    static constexpr uint kPatches = gpu::kPatches;
     static constexpr uint kPrefilteredSize = gpu::kPrefilteredSize;
     static constexpr uint kPrefilteredWords = gpu::kPrefilteredWords;
     static constexpr int kPrefilteredLevels = gpu::kPrefilteredLevels;
@@ -76,6 +78,10 @@ template <class Real> struct LightFieldTwin
     uint irradianceWord(uint index) const
     {
         return source.irradiance[index];
+    }
+    uint patchWord(uint index) const
+    {
+        return source.patches[index];
     }
     uint prefilteredWord(uint index) const
     {

@@ -12,6 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 5) const uint kList = kListGathered;
 layout(constant_id = 3) const bool kDiffuse = true; // make the diffuse light
 layout(constant_id = 4) const bool kRough = true;   // make the rough reflections
+layout(constant_id = 6) const bool kByPatches = false; // diffuse light from one probe's patches
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
 layout(scalar, set = 1, binding = 6) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/environment_brdf.h
@@ -69,9 +70,17 @@ void main()
     {
         times[i] *= weightOfProbe(named[i], point, p.normal);
         weights += times[i];
-        if (wantDiffuse) arriving += times[i] * probeIrradiance(named[i], p.normal);
+        if (wantDiffuse && !kByPatches) arriving += times[i] * probeIrradiance(named[i], p.normal);
         float seen = wantRough ? seenAlong(named[i], point - probeHeader(named[i]).centre, lobe.direction) : 0.0;
         if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+    }
+    if (wantDiffuse && kByPatches && count > 0u)
+    {
+        // One probe, drawn by its say; the filter blends what neighbours drew.
+        float left = randomPair(uvec2(at), 0u, 5u, frame.seed).x * (weights - 1e-30);
+        uint drawn = 0u;
+        while (drawn + 1u < count && left >= times[drawn]) left -= times[drawn++];
+        arriving = weights * patchIrradiance(named[drawn], point - probeHeader(named[drawn]).centre, p.normal);
     }
     if (wantDiffuse) imageStore(diffuse, at, vec4(arriving / weights, 1.0));
     if (!wantRough) return;

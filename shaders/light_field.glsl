@@ -19,6 +19,7 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
     uvec2 radianceAddress;   // FieldData::radiance
     uvec2 irradianceAddress; // FieldData::irradiance
     uvec2 prefilteredAddress; // FieldData::prefiltered
+    uvec2 patchAddress;       // FieldData::patches
 };
 layout(scalar, set = SCONCE_FIELD_SET, binding = 1) readonly buffer SconceProbes { ProbeHeader sconceProbes[]; };
 layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
@@ -35,6 +36,7 @@ ProbeHeader probeHeader(uint probe) { return sconceProbes[probe]; }
 uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
 uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }
 uint irradianceWord(uint index) { return SconceWords(irradianceAddress).word[index]; }
+uint patchWord(uint index) { return SconceWords(patchAddress).word[index]; }
 uint prefilteredWord(uint index) { return SconceWords(prefilteredAddress).word[index]; }
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 

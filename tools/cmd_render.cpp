@@ -23,9 +23,9 @@ namespace
 const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_indirect", "glossy_indirect", "depth",  "normal", "albedo",
                                                "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
 
-constexpr const char *kIrradiance = "irradiance", *kTraced = "traced"; // of --diffuse
-constexpr uint32_t kTracedAreaSamples = 2;                             // of a frame's rays, where each is traced
-constexpr const char *kMaps = "maps", *kField = "field";               // of --area-shadows
+constexpr const char *kIrradiance = "irradiance", *kPatches = "patches", *kTraced = "traced"; // of --diffuse
+constexpr uint32_t kTracedAreaSamples = 2;                                                    // of a frame's rays, where each is traced
+constexpr const char *kMaps = "maps", *kField = "field";                                      // of --area-shadows
 
 struct RenderOptions
 {
@@ -56,7 +56,10 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         if (options.areaSamples == 0) options.quality.take("--samples", options.areaSamples, frame.areaSamples);
         options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
         options.quality.take("--temporal", options.temporal, frame.effects.temporal);
-        options.quality.take("--diffuse", options.diffuse, std::string(frame.effects.tracedDiffuse ? kTraced : kIrradiance));
+        options.quality.take("--diffuse", options.diffuse,
+                             std::string(frame.effects.tracedDiffuse ? kTraced
+                                         : frame.effects.patches     ? kPatches
+                                                                     : kIrradiance));
         options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
@@ -180,6 +183,7 @@ int runRender(RenderOptions options, const Context& context)
     settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
     settings.effects.tracedDiffuse = options.diffuse == kTraced;
+    settings.effects.patches = options.diffuse == kPatches;
     settings.effects.fieldShadows = options.areaShadows == kField;
     Result<DeviceScene> deviceScene =
         DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects), consoleProgress(context));
@@ -283,11 +287,13 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->check(unlisted(CLI::Range(0.0f, 2.0f)))
         ->type_name("R");
     command
-        ->add_option("--diffuse", options->diffuse,
-                     "irradiance: diffuse light from prefiltered irradiance, emitters and sky from shadowed samples; traced: all of it by "
-                     "--samples cosine-weighted rays a pixel, filtered (default: irradiance)")
-        ->check(unlisted(CLI::IsMember({kIrradiance, kTraced})))
-        ->type_name("irradiance|traced");
+        ->add_option(
+            "--diffuse", options->diffuse,
+            "irradiance: diffuse light from prefiltered irradiance, emitters and sky from shadowed samples; patches: the same from what a "
+            "probe sees as patches, which is right about near surfaces; traced: all of it by --samples cosine-weighted rays a pixel, "
+            "filtered (default: irradiance)")
+        ->check(unlisted(CLI::IsMember({kIrradiance, kPatches, kTraced})))
+        ->type_name("irradiance|patches|traced");
     command
         ->add_option(
             "--area-shadows", options->areaShadows,

@@ -21,6 +21,8 @@ const uint kIrradianceSize = 32u;  // texels a side of the octahedral irradiance
 const uint kPrefilteredSize = 64u; // texels a side of the finest prefiltered radiance map, octahedral; each level has half of it
 const int kPrefilteredLevels = 4;
 const uint kPrefilteredWords = 5440u; // of a probe, all levels
+const int kPatchSide = 6;          // patches a side of a cube face: what a probe sees, coarsely, for diffuse light
+const uint kPatches = 216u;        // of a probe
 const uint kLowFactor = 16u;       // texels of the octahedral map a texel of its low-resolution map covers, per axis
 
 struct ProbeHeader

@@ -1,5 +1,5 @@
 // What light the probe maps hold: radiance at a traced hit and prefiltered irradiance at a point. Shared text, see probe_trace.h; needs
-// radianceWord(uint), irradianceWord(uint) and holdsRadiance() besides.
+// radianceWord(uint), irradianceWord(uint), patchWord(uint) and holdsRadiance() besides.
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {
@@ -124,6 +124,50 @@ SCONCE_FN vec3 lobeRadiance(uint probe, vec3 fromProbe, SCONCE_IN(Lobe) lobe, re
     vec3 met = fromProbe + way * lobe.direction;
     real away = max(length(met), real(1e-6));
     return prefilteredRadiance(probe, away > real(1e-6) ? met / away : lobe.direction, min(lobe.width * way / away, real(1.5)));
+}
+
+// Of what a probe's patches leave of the hemisphere, what it hides from them: the share that its own irradiance is taken for. 0, 1/4, 1/2 and 1 were
+// tried (docs/light.md).
+SCONCE_CONST real kHiddenShare = real(0.5);
+
+/// Light that a probe's patches throw on a surface point: cosine-weighted mean radiance (irradiance / pi), without emission and sky. Each patch
+/// is what the probe sees through 1/36 of a cube face, as one diffuse disc: its place in the middle of that window, its normal, its mean
+/// radiance. The point is lit by it as a disc is seen (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-12's limit), from
+/// where the point is, not from where the probe is: so it is right about what is near, which prefiltered irradiance is not. The patches are virtual point
+/// lights (Keller 1997, "Instant Radiosity") of a probe. What of the hemisphere they leave open is hidden from the probe.
+/// Cost: 2 kPatches reads.
+/// @param fromProbe  the point relative to the probe's centre, field units
+SCONCE_FN vec3 patchIrradiance(uint probe, vec3 fromProbe, vec3 normal)
+{
+    real pi = real(3.14159265358979);
+    vec3 sum = vec3(real(0.0));
+    real covered = real(0.0); // of the hemisphere, by the cosine
+    uint word = 2u * kPatches * probe;
+    for (int face = 0; face < 6; ++face)
+        for (int cell = 0; cell < kPatchSide * kPatchSide; ++cell, word += 2u)
+        {
+            real u = real(2 * (cell % kPatchSide) + 1) / real(kPatchSide) - real(1.0);
+            real v = real(2 * (cell / kPatchSide) + 1) / real(kPatchSide) - real(1.0);
+            real stretch = sqrt(real(1.0) + u * u + v * v);
+            real solid = real(4.0) / (real(kPatchSide * kPatchSide) * stretch * stretch * stretch); // angle of the window
+            vec3 towards = faceDirection(face, vec3(u, v, real(1.0)));
+            uint place = patchWord(word);
+            real q = halfToReal(place); // 1 / W, as of a texel
+            if (q == real(0.0)) // sky
+            {
+                covered += max(dot(towards, normal), real(0.0)) / stretch * solid / pi;
+                continue;
+            }
+            vec3 facing = unpackNormal8(place >> 16);
+            vec3 away = towards / q - fromProbe;
+            real d2 = max(dot(away, away), real(1e-12));
+            real cosines = max(dot(away, normal), real(0.0)) * max(-dot(away, facing), real(0.0)) / d2;
+            real area = solid * stretch * stretch / (q * q * max(-dot(towards, facing) / stretch, real(0.1)));
+            real factor = cosines * area / (pi * d2 + area);
+            covered += factor;
+            sum += factor * unpackRadiance(patchWord(word + 1u));
+        }
+    return sum / max(covered, real(1.0)) + kHiddenShare * max(real(1.0) - covered, real(0.0)) * probeIrradiance(probe, normal);
 }
 
 /// Whether light can be gathered at a point: not for a point or normal that is not finite, nor for a normal without length.

@@ -126,6 +126,31 @@ TEST_F(SceneRendererTest, TracedDiffuseLightIsNearerToThePathTracer)
     EXPECT_NEAR(mean(floats(traced->diffuseIndirect)) / mean(asked), 1.0, 0.03);
 }
 
+TEST_F(SceneRendererTest, DiffuseLightByPatchesIsNearerToThePathTracer)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    auto field = bakeField(scene, kCornellProbes, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    RenderSettings settings = settingsFor();
+    settings.areaSamples = 64;
+    const auto read = drawWith(*field, scene, settings);
+    settings.effects.patches = true;
+    const auto patches = drawWith(*field, scene, settings);
+    ASSERT_TRUE(read && patches);
+    const ImageSet truth = truthOf(scene, 256);
+    const std::vector<float> asked = squares(truth.find("diffuse_indirect")->pixels);
+    const double of = relativeDifference(squares(floats(read->diffuseIndirect)), asked);
+    const double with = relativeDifference(squares(floats(patches->diffuseIndirect)), asked);
+    RecordProperty("irradiance", std::to_string(of));
+    RecordProperty("patches", std::to_string(with));
+    EXPECT_LT(with, 0.9 * of);
+    EXPECT_NEAR(mean(floats(patches->diffuseIndirect)) / mean(asked), 1.0, 0.15);
+    field->patches.clear(); // as a file of version 3
+    const auto refused = drawWith(*field, scene, settings);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("holds no patches"), std::string::npos);
+}
+
 TEST_F(SceneRendererTest, GBufferIsWhatThePathTracerSees)
 {
     const Scene scene = *makeBuiltinScene("temple");

@@ -150,6 +150,14 @@ TEST_P(EveryScene, DeepAndShallowOctreesGiveTheSameAnswers)
     expectAtMost(row("octrees of 1, 5 and 6 levels: rays stopped by the limit, or not finite"), 3 * kRays, double(limits), 0.0);
 }
 
+/// Whether a float look-up is off by over 1e-3 from double in some channel.
+bool differs(vec3 a, glm::dvec3 b)
+{
+    for (int c = 0; c < 3; ++c)
+        if (!(std::abs(double(a[c]) - b[c]) <= 1e-3 * std::abs(b[c]))) return true;
+    return false;
+}
+
 /// Light of many sizes in every texel of irradiance, from a seed: what a float look-up makes of it is compared with double.
 TEST_P(EveryScene, LightLookedUpInFloatIsThatInDouble)
 {
@@ -163,9 +171,12 @@ TEST_P(EveryScene, LightLookedUpInFloatIsThatInDouble)
         const float mean = 0.4f * random.uniform();
         field.irradiance[i + 1] = glm::packHalf2x16(glm::vec2(mean, 0.1f * mean * mean));
     }
+    field.radiance.assign(size_t(6) * field.info.faceSize * field.info.faceSize * field.probes.size(), 0);
+    for (size_t i = 0; i < field.radiance.size(); ++i) field.radiance[i] = field.irradiance[2 * (i % (field.irradiance.size() / 2))];
+    makePatches(field, std::vector<uint32_t>(field.radiance.size(), 1u), {});
     twin::LightFieldTwin<float> single(field, defaultQuality());
     twin::LightFieldTwin<double> oracle(field, defaultQuality());
-    size_t other = 0, bad = 0;
+    size_t other = 0, bad = 0, otherPatches = 0;
     for (size_t i = 0; i < kRays; ++i)
     {
         const vec3 point = (glossy.origins[i] - vec3(field.info.origin)) / field.info.scale, n = glossy.normals[i];
@@ -174,14 +185,15 @@ TEST_P(EveryScene, LightLookedUpInFloatIsThatInDouble)
         const vec3 a = single.irradianceAt(point, n, leaf, reads);
         const glm::dvec3 b = oracle.irradianceAt(glm::dvec3(point), glm::dvec3(n), glm::dvec3(leaf), reads);
         bad += !std::isfinite(a.x + a.y + a.z);
-        for (int c = 0; c < 3; ++c)
-            if (!(std::abs(double(a[c]) - b[c]) <= 1e-3 * std::abs(b[c])))
-            {
-                ++other;
-                break;
-            }
+        other += differs(a, b);
+        const uint32_t probe = uint32_t(i % field.probes.size());
+        const vec3 fromProbe = point - vec3(field.probes[probe].centre);
+        const vec3 thrown = single.patchIrradiance(probe, fromProbe, n);
+        bad += !std::isfinite(thrown.x + thrown.y + thrown.z);
+        otherPatches += differs(thrown, oracle.patchIrradiance(probe, glm::dvec3(fromProbe), glm::dvec3(n)));
     }
     expectAtMost(row("irradiance in float: share off by over 1e-3 from double"), kRays, double(other) / kRays, 0.001);
+    expectAtMost(row("light of patches in float: share off by over 1e-3 from double"), kRays, double(otherPatches) / kRays, 0.001);
     expectAtMost(row("irradiance in float: numbers that are not finite"), kRays, double(bad), 0.0);
 }
 

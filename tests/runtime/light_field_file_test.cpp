@@ -69,7 +69,8 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
     field.radiance.resize(size_t(probes) * radianceWordsPerProbe(chart, size));
     field.irradiance.resize(size_t(probes) * gpu::kIrradianceSize * gpu::kIrradianceSize * 2);
     field.prefiltered.resize(size_t(probes) * gpu::kPrefilteredWords);
-    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered})
+    field.patches.resize(size_t(probes) * 2 * gpu::kPatches);
+    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches})
         for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
     field.octree.boundsHigh = {1.0f, 2.0f, 3.0f};
     field.info.voxel = field.octree.voxel = 0.125f;
@@ -96,6 +97,7 @@ void expectSame(const FieldData& a, const FieldData& b)
     EXPECT_EQ(a.radiance, b.radiance);
     EXPECT_EQ(a.irradiance, b.irradiance);
     EXPECT_EQ(a.prefiltered, b.prefiltered);
+    EXPECT_EQ(a.patches, b.patches);
     EXPECT_EQ(a.octree.texels, b.octree.texels);
     EXPECT_EQ(a.octree.boundsHigh, b.octree.boundsHigh);
     EXPECT_EQ(a.octree.voxel, b.octree.voxel);
@@ -134,7 +136,8 @@ TEST(FieldData, BytesByPartAddUpToWhatIsStored)
         const FieldBytes bytes = bytesByPart(field);
         EXPECT_EQ(bytes.distance + bytes.normals, field.distance.size() * 4);
         EXPECT_EQ(bytes.normals, chart == gpu::kChartOctahedral ? 3u * 16 * 16 * 2 : 0u);
-        EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size() + field.prefiltered.size()) +
+        EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size() + field.prefiltered.size() +
+                                      field.patches.size()) +
                                      16 * 4 + 3 * 48);
     }
 }
@@ -171,7 +174,7 @@ TEST_F(LightFieldFile, RoundTripOfAnEmptyField)
     FieldData field = smallField(gpu::kChartCube, 8, 1);
     field.info.probeCount = 0;
     field.probes.clear(), field.distance.clear(), field.radiance.clear(), field.irradiance.clear(), field.prefiltered.clear(),
-        field.octree.texels.clear();
+        field.patches.clear(), field.octree.texels.clear();
     field.octree.bricks = {0, 0, 0};
     field.effects.clear();
     ASSERT_TRUE(saveField(field, file));
@@ -279,11 +282,12 @@ TEST_F(LightFieldFile, OtherVersionsAreRefusedByName)
     }
 }
 
-// A file of version 2 is one of version 3 without prefiltered radiance, but for its header's number.
+// A file of version 2 is one of today's without prefiltered radiance and patches, but for its header's number.
 TEST_F(LightFieldFile, AnOlderFileSaysItsOwnVersion)
 {
     FieldData field = smallField();
     field.prefiltered.clear();
+    field.patches.clear();
     ASSERT_TRUE(saveField(field, file));
     EXPECT_EQ(loadField(file)->fileVersion, kFieldFileVersion);
     std::string bytes = readBytes(file);

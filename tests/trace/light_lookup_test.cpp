@@ -104,6 +104,47 @@ TEST(LightLookup, ALobeMeetsTheWallThatItsAxisMeets)
     EXPECT_LT(seen / found, 0.05 * guessed / count) << "what the moments alone would give";
 }
 
+// Of a closed box of one radiance every point of its walls gets just that, wherever the probe is: the patches' form factors sum to 1.
+TEST(LightLookup, PatchesOfAUniformBoxLightItsWallsUniformly)
+{
+    LitBox box = uniformBox(3.0f);
+    makePatches(box.field, std::vector<uint32_t>(box.field.radiance.size(), 1u), {});
+    twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
+    twin::LightFieldTwin<double> oracle(box.field, testing_support::defaultQuality());
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> across(-0.9f, 0.9f);
+    const gpu::LightFieldInfo& space = box.field.info;
+    double sum = 0.0, worst = 0.0;
+    constexpr int kPoints = 3000;
+    for (int i = 0; i < kPoints; ++i)
+    {
+        vec3 p(across(random), across(random), across(random)), n(0.0f);
+        const int axis = i % 3;
+        p[axis] = (i / 3) % 2 ? 1.0f : -1.0f;
+        n[axis] = -p[axis];
+        const uint32_t probe = uint32_t(i / 6) % uint32_t(box.field.probes.size());
+        const vec3 fromProbe = (p - space.origin) / space.scale - vec3(box.field.probes[probe].centre);
+        const float light = text.patchIrradiance(probe, fromProbe, n).g;
+        EXPECT_NEAR(light, oracle.patchIrradiance(probe, fromProbe, n).g, 1e-4 * light);
+        sum += light;
+        worst = std::max(worst, std::abs(double(light) / 3.0 - 1.0));
+    }
+    RecordProperty("worst", std::to_string(worst));
+    EXPECT_NEAR(sum / kPoints, 3.0, 0.18) << "discs leave the edges of a box a little dark";
+    EXPECT_LT(worst, 0.33);
+}
+
+TEST(LightLookup, PatchesLeaveOutEmissionAndSky)
+{
+    LitBox box = uniformBox(3.0f);
+    std::ranges::fill(box.field.irradiance, 0u);
+    makePatches(box.field, std::vector<uint32_t>(box.field.radiance.size(), 1u), box.field.radiance);
+    twin::LightFieldTwin<float> text(box.field, testing_support::defaultQuality());
+    EXPECT_EQ(text.patchIrradiance(0, vec3(0.1f), vec3(0.0f, 1.0f, 0.0f)), vec3(0.0f)) << "all of it is emission";
+    makePatches(box.field, std::vector<uint32_t>(box.field.radiance.size(), 0u), {});
+    EXPECT_EQ(text.patchIrradiance(0, vec3(0.1f), vec3(0.0f, 1.0f, 0.0f)), vec3(0.0f)) << "all of it is sky";
+}
+
 TEST(LightLookup, OctahedralMapWrapsWithoutASeam)
 {
     // A map that holds a smooth function of direction reads smoothly across the square's border.
