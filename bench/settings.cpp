@@ -82,7 +82,7 @@ std::vector<Knob> makeKnobs()
         knob("rays", frame, placed, {"1", "2", "4", "8"}, "rays a pixel", SCONCE_FIELD(frame.glossyRays)),
         knob("trace every", frame, placed, {"1", "2", "4", "8", "16"}, "pixels", SCONCE_FIELD(frame.traceEvery)),
         knob("area samples", frame, placed, {"2", "8", "32"}, "samples", SCONCE_FIELD(frame.areaSamples)),
-        knob("area shadows", frame, fields, {"maps", "field"}, "", SCONCE_FIELD(frame.effects.fieldShadows)),
+        knob("field shadows", frame, fields, {"off", "on"}, "", SCONCE_FIELD(frame.effects.fieldShadows)),
         knob("denoise", frame, placed, {"on", "off"}, "", SCONCE_FIELD(frame.effects.denoise)),
         knob("temporal", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.temporal)),
         knob("patches", frame, fields, {"off", "on"}, "", SCONCE_FIELD(frame.effects.patches)),

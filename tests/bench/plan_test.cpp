@@ -63,6 +63,17 @@ TEST(Settings, OfEveryPlannedPointComeBackFromTheirJson)
     EXPECT_FALSE(settingsFrom(kPathTracer, {{"ranked", 2}}).ok());
 }
 
+// "field" for a knob that is on or off was left out of the sweep without a word.
+TEST(Settings, EveryValueOfASweepIsOneOfItsKnob)
+{
+    for (const Knob& knob : knobs())
+        for (const std::string_view value : knob.sweep)
+        {
+            PointSettings settings;
+            EXPECT_TRUE(knob.set(settings, value)) << knob.name << " " << value;
+        }
+}
+
 TEST(Keys, TellScenesAndSettingsApart)
 {
     Scene scene = *makeBuiltinScene("cornell");
