@@ -162,6 +162,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"probe radiance", "as distances"},
         {"probe irradiance", "as distances"},
         {"prefiltered radiance", "as distances, made on the host"},
+        {"probe patches", "as distances, made on the host"},
         {"probe headers", "as distances"},
         {"rays", "from the host: the tracer answers any number"},
         {"tile lists", "integers"},
