@@ -403,7 +403,7 @@ std::vector<std::string> answersOf(const Json& results)
     std::vector<std::string> answers;
     for (const Question& question : questions)
     {
-        std::string scenes;
+        std::string reached, missed; // scenes
         for (const Json& scene : results["scenes"])
         {
             if (!scene.contains("analysis")) continue;
@@ -425,15 +425,18 @@ std::vector<std::string> answersOf(const Json& results)
                     worst = &row;
             }
             if (!worst) continue;
-            scenes += scenes.empty() ? " " : "; ";
+            const std::string where =
+                scene["name"].get<std::string>() + " (against " + methodName((*worst)["method"].get<std::string>()) + ")";
             if (unreached)
-                scenes += "out of reach in " + scene["name"].get<std::string>() + " (against " +
-                          methodName((*worst)["method"].get<std::string>()) + ")";
+                missed += (missed.empty() ? " in " : ", in ") + where;
             else
-                scenes += times((*worst)["ratio"][question.ratio]) + " as much in " + scene["name"].get<std::string>() + " (against " +
-                          methodName((*worst)["method"].get<std::string>()) + ")";
+                reached += (reached.empty() ? " " : "; ") + times((*worst)["ratio"][question.ratio]) + " as much in " + where;
         }
-        if (!scenes.empty()) answers.push_back(question.begin + scenes + ".");
+        const std::string begin = question.begin;
+        if (!reached.empty())
+            answers.push_back(begin + reached + (missed.empty() ? "." : "; no setting of ours does it" + missed + "."));
+        else if (!missed.empty())
+            answers.push_back(begin.substr(0, begin.find(", Sconce")) + ": no setting of ours does it" + missed + ".");
     }
     return answers;
 }

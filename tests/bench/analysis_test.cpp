@@ -182,5 +182,22 @@ TEST(Analysis, AnswersNameTheHardestOpponentOfEachScene)
         1);
 }
 
+// "Sconce's frame takes out of reach in town" was a sentence of the report.
+TEST(Analysis, AnswersSayWhatNoSettingReaches)
+{
+    const Json reached = {{"what", "error"},        {"error_key", "glossy.relmse"}, {"cost_key", "frame_ms"},  {"method", "b0"},
+                          {"theirs", "b0/default"}, {"ours", "ours/default"},       {"ratio", {{"time", 0.5}}}};
+    Json missed = reached;
+    missed["ours"] = nullptr;
+    const auto scene = [](const char* name, const Json& row) {
+        return Json{{"name", name}, {"analysis", {{"equal", Json::array({row})}}}};
+    };
+    EXPECT_EQ(answersOf({{"scenes", {scene("room", reached), scene("town", missed)}}}).front(),
+              "For the glossy error of the opponent, Sconce's frame takes 0.5 times as much in room (against B0); no setting of ours does "
+              "it in town (against B0).");
+    EXPECT_EQ(answersOf({{"scenes", {scene("town", missed), scene("hall", missed)}}}).front(),
+              "For the glossy error of the opponent: no setting of ours does it in town (against B0), in hall (against B0).");
+}
+
 } // namespace
 } // namespace sconce
