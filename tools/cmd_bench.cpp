@@ -48,17 +48,6 @@ std::string nameOf(const std::string& source)
     return stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
 }
 
-std::string commandLine(const BenchOptions& options)
-{
-    std::string command = "sconce bench";
-    for (const std::string& scene : options.scenes) command += " " + scene;
-    return command + " --size " + std::to_string(options.settings.width) + "x" + std::to_string(options.settings.height) + " --frames " +
-           std::to_string(options.settings.frames) + " --rays " + std::to_string(options.settings.rays) + " --spp " +
-           std::to_string(options.settings.referencePaths) +
-           (options.plan.probes ? " --probes " + std::to_string(options.plan.probes) : std::string()) +
-           (options.plan.roughness ? " --roughness " + std::to_string(*options.plan.roughness) : std::string());
-}
-
 /// A device, and what every scene is measured with.
 struct BenchRun
 {
@@ -115,7 +104,7 @@ int runSweep(const BenchRun& run)
 {
     const Stopwatch watch;
     const std::filesystem::path folder(run.options.output);
-    Json results = resultsHead(SCONCE_VERSION, commandLine(run.options), run.device);
+    Json results = resultsHead(SCONCE_VERSION, run.context.commandLine, run.device);
     for (const std::string& source : run.options.scenes)
     {
         results["scenes"].push_back(Json::object());

@@ -38,6 +38,27 @@ int exitCode(ErrorCode code)
     return exitInput;
 }
 
+std::string spelledForShell(int argc, const char* const* argv)
+{
+    std::string line = "sconce";
+    for (int i = 1; i < argc; ++i)
+    {
+        const std::string argument = argv[i];
+        const bool plain = !argument.empty() && argument.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                                                           "-_=+:,./@%") == std::string::npos;
+        line += ' ';
+        if (plain)
+        {
+            line += argument;
+            continue;
+        }
+        line += '\'';
+        for (const char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        line += '\'';
+    }
+    return line;
+}
+
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, const std::string& description)
 {
     CLI::App* command = app.add_subcommand(name, description);

@@ -35,7 +35,11 @@ struct Context
     bool json = false;
     bool quiet = false;
     std::function<int()> action;
+    std::string commandLine; // as it was typed, for what records how it was made
 };
+
+/// A command line as a shell takes it: `sconce`, then the arguments, those in single quotes that need it.
+std::string spelledForShell(int argc, const char* const* argv);
 
 /// A sub-command with --json and --quiet.
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, const std::string& description);

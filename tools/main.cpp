@@ -14,6 +14,7 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", SCONCE_VERSION);
     app.require_subcommand(1);
     Context context;
+    context.commandLine = spelledForShell(argc, argv);
     addSceneCommands(app, context);
     addPlaceCommand(app, context);
     addBakeCommand(app, context);

@@ -51,6 +51,9 @@ TEST(BenchCommand, MeasuresEveryMethodOnceAndKeepsIt)
     const json results = resultsIn(out);
     ASSERT_FALSE(results.is_discarded());
     EXPECT_EQ(results["schema"], 2);
+    std::string typed = "sconce";
+    for (const std::string& argument : benchInto(out)) typed += " " + argument;
+    EXPECT_EQ(results["commands"][0], typed) << "whole, so that it can be run again";
     const json& scene = results["scenes"][0];
     EXPECT_EQ(scene["name"], "cornell");
     std::vector<std::string> methods;
