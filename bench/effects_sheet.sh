@@ -42,11 +42,13 @@ P
 done <<LIST
 diffuse|cornell|8|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse|
 traced diffuse|cornell|8|diffuse_indirect|diffuse trace,diffuse denoise|--effects diffuse --diffuse traced|
+diffuse by patches|cornell|8|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse --diffuse patches|
 rough|cornell|8|glossy_indirect|gather light|--effects rough|
 glossy|cornell-glossy|8|glossy_indirect|glossy trace,glossy denoise|--effects glossy,denoise|
 glossy unfiltered|cornell-glossy|8|glossy_indirect|glossy trace|--effects glossy|
 mirror|cornell|8|glossy_indirect|mirror trace|--roughness 0 --effects mirror|--roughness 0
 emitters|$out/room16.gltf|12|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
+emitters by shadow rays|$out/room16.gltf|12|diffuse_indirect|area light,diffuse denoise|--effects diffuse --area-shadows field|
 sun|temple|16|direct|direct light|--effects none|
 punctual|$out/point.gltf|12|direct|direct light|--effects none|
 sky|temple|16|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
