@@ -56,7 +56,7 @@ public:
 
     /// Reads the reference, or renders it; of surfaces with this roughness, where it is given.
     Status makeReference(const std::optional<float>& roughness, const Progress& progress);
-    /// Draws the rays and uploads the scene; once, before anything below.
+    /// Draws the rays; once, before anything below.
     Status prepare();
 
     /// A point on the device, ready to be measured and timed. The path tracer's has neither tracer nor renderer.

@@ -41,6 +41,8 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     if ((!even && !std::has_single_bit(settings.resolution)) || settings.resolution < 16 || settings.resolution > 2048)
         return "resolution is " + std::to_string(settings.resolution) +
                "; give a power of two in [16, 2048], or a multiple of 32 for the cube chart";
+    if (!settings.scene.light.areaShadows)
+        return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
     if (settings.bounces > 64) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 64]";
     if (!(settings.converged >= 0.0f && settings.converged <= 1.0f))
         return "converged is " + std::to_string(settings.converged) + "; give a value in [0, 1]";

@@ -104,6 +104,20 @@ TEST_F(SceneRendererTest, CornellMatchesThePathTracer)
     EXPECT_LT(double(unknown), 0.02 * 16 * kSide * kSide);
 }
 
+/// Diffuse light of the box against the path tracer, from irradiance and another way: squares' relative difference, and its mean, ours over
+/// the truth's.
+struct DiffuseErrors
+{
+    double irradiance = 0.0, other = 0.0, mean = 0.0;
+};
+
+DiffuseErrors diffuseErrors(const RenderedFrame& irradiance, const RenderedFrame& other, const ImageSet& truth)
+{
+    const std::vector<float> asked = squares(truth.find("diffuse_indirect")->pixels);
+    return {relativeDifference(squares(floats(irradiance.diffuseIndirect)), asked),
+            relativeDifference(squares(floats(other.diffuseIndirect)), asked), mean(floats(other.diffuseIndirect)) / mean(asked)};
+}
+
 TEST_F(SceneRendererTest, TracedDiffuseLightIsNearerToThePathTracer)
 {
     const Scene scene = *makeBuiltinScene("cornell");
@@ -115,15 +129,10 @@ TEST_F(SceneRendererTest, TracedDiffuseLightIsNearerToThePathTracer)
     settings.effects.tracedDiffuse = true;
     const auto traced = drawWith(*field, scene, settings);
     ASSERT_TRUE(read && traced);
-    const ImageSet truth = truthOf(scene, 256);
-    const std::vector<float> asked = squares(truth.find("diffuse_indirect")->pixels);
-    const double of = relativeDifference(squares(floats(read->diffuseIndirect)), asked);
-    const double with = relativeDifference(squares(floats(traced->diffuseIndirect)), asked);
-    RecordProperty("irradiance", std::to_string(of));
-    RecordProperty("traced", std::to_string(with));
-    EXPECT_LT(with, of);
-    EXPECT_LT(with, 0.12) << "irradiance: " << of;
-    EXPECT_NEAR(mean(floats(traced->diffuseIndirect)) / mean(asked), 1.0, 0.03);
+    const DiffuseErrors errors = diffuseErrors(*read, *traced, truthOf(scene, 256));
+    EXPECT_LT(errors.other, errors.irradiance);
+    EXPECT_LT(errors.other, 0.12) << "irradiance: " << errors.irradiance;
+    EXPECT_NEAR(errors.mean, 1.0, 0.03);
 }
 
 TEST_F(SceneRendererTest, DiffuseLightByPatchesIsNearerToThePathTracer)
@@ -137,14 +146,9 @@ TEST_F(SceneRendererTest, DiffuseLightByPatchesIsNearerToThePathTracer)
     settings.effects.patches = true;
     const auto patches = drawWith(*field, scene, settings);
     ASSERT_TRUE(read && patches);
-    const ImageSet truth = truthOf(scene, 256);
-    const std::vector<float> asked = squares(truth.find("diffuse_indirect")->pixels);
-    const double of = relativeDifference(squares(floats(read->diffuseIndirect)), asked);
-    const double with = relativeDifference(squares(floats(patches->diffuseIndirect)), asked);
-    RecordProperty("irradiance", std::to_string(of));
-    RecordProperty("patches", std::to_string(with));
-    EXPECT_LT(with, 0.9 * of);
-    EXPECT_NEAR(mean(floats(patches->diffuseIndirect)) / mean(asked), 1.0, 0.15);
+    const DiffuseErrors errors = diffuseErrors(*read, *patches, truthOf(scene, 256));
+    EXPECT_LT(errors.other, 0.9 * errors.irradiance);
+    EXPECT_NEAR(errors.mean, 1.0, 0.15);
     field->patches.clear(); // as a file of version 3
     const auto refused = drawWith(*field, scene, settings);
     ASSERT_FALSE(refused);

@@ -516,6 +516,17 @@ TEST(BakeBudget, TooSmallIsRefusedWithTheNumbers)
     EXPECT_NE(field.error().message.find("24 MiB"), std::string::npos) << field.error().message;
 }
 
+TEST_F(Bake, WithoutShadowMapsOfAreaLightIsRefused)
+{
+    const std::vector<vec3> probes = {vec3(0.0f)};
+    BakeSettings settings = settingsFor(64);
+    settings.scene.light.areaShadows = false; // as frames with shadow rays have it
+    const auto field = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    ASSERT_FALSE(field);
+    EXPECT_EQ(field.error().code, ErrorCode::badArgument);
+    EXPECT_NE(field.error().message.find("areaShadows"), std::string::npos) << field.error().message;
+}
+
 TEST_F(Bake, SceneWithoutTrianglesIsRefused)
 {
     const std::vector<vec3> probes = {vec3(0.0f)};
