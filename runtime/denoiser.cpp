@@ -24,7 +24,7 @@ Result<DescriptorSet> makeFrameSet(Gpu& gpu, const Buffer& frame, std::span<cons
     std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                     {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                     {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+                                                    {3, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
     bindings.insert(bindings.end(), passBindings.begin(), passBindings.end());
     auto set = DescriptorSet::create(gpu, bindings);
     if (set) set->write(3, frame);
@@ -72,7 +72,7 @@ Result<DescriptorSet> Denoiser::makeStep(const Buffer& frame, const GpuImage& fr
     if (!set) return set.error();
     set->write(4, from.view(), VK_IMAGE_LAYOUT_GENERAL);
     set->write(5, to.view(), VK_IMAGE_LAYOUT_GENERAL);
-    set->write(kTileBinding, desc.tiles ? desc.tiles->buffer() : frame); // without tiles it is not read
+    set->write(kTileBinding, desc.tiles->buffer());
     return set;
 }
 
@@ -101,11 +101,11 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
         auto set = makeFrameSet(*gpu, frame, bindings);
         if (!set) return set.error();
         for (const auto& [binding, image] : images) set->write(binding, image->view(), VK_IMAGE_LAYOUT_GENERAL);
-        set->write(kTileBinding, desc.tiles ? desc.tiles->buffer() : frame);
+        set->write(kTileBinding, desc.tiles->buffer());
         histories[i].blend = std::move(*set);
     }
     const VkDescriptorSetLayout layouts[] = {desc.firstSet, histories[0].blend.layout()};
-    const uint32_t constants[] = {desc.tiles ? 1u : 0u, desc.term};
+    const uint32_t constants[] = {desc.tiles->constant(), desc.term};
     auto built = Pipeline::compute(*gpu, temporal_comp, layouts, 0, constants);
     if (!built) return built.error();
     temporal = std::move(*built);
@@ -126,7 +126,7 @@ Result<Denoiser> Denoiser::create(Gpu& gpu, const Desc& desc, const Buffer& fram
     if (desc.temporal)
         if (auto status = made.makeHistory(frame, light, scratch); !status) return status.error();
     const VkDescriptorSetLayout layouts[] = {desc.firstSet, made.forth.layout()};
-    const uint32_t constants[] = {desc.tiles ? 1u : 0u, desc.term, desc.temporal ? 1u : 0u};
+    const uint32_t constants[] = {desc.tiles->constant(), desc.term, desc.temporal ? 1u : 0u};
     auto built = Pipeline::compute(gpu, denoise_comp, layouts, sizeof(DenoisePush), constants);
     if (!built) return built.error();
     made.pipeline = std::move(*built);
@@ -159,7 +159,7 @@ void Denoiser::blend(VkCommandBuffer cmd, VkDescriptorSet firstSet)
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const VkDescriptorSet sets[] = {firstSet, own.blend.handle()};
     temporal.bind(cmd, sets);
-    dispatchTiles(*gpu, cmd, desc.tiles, desc.term, desc.width, desc.height);
+    desc.tiles->dispatch(cmd, desc.term);
     scanImage(*gpu, cmd, "blend over time", own.light);
 }
 
@@ -174,7 +174,7 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
         const VkDescriptorSet sets[] = {firstSet, step->handle()};
         pipeline.bind(cmd, sets);
         pipeline.push(cmd, DenoisePush{stride, desc.followRoughness ? 1 : 0});
-        dispatchTiles(*gpu, cmd, desc.tiles, desc.term, desc.width, desc.height);
+        desc.tiles->dispatch(cmd, desc.term);
         step = step == &back ? &forth : &back;
     }
 }

@@ -17,7 +17,7 @@ public:
         uint32_t term = gpu::kTermGlossy;                // only its pixels are read and written
         bool followRoughness = false;    // a pixel's reach shrinks with its roughness, to nothing for a mirror: for the glossy term
         bool temporal = false;           // blend with the frames before, as FrameView::follows allows; 48 bytes more a pixel
-        const TileList* tiles = nullptr; // null: over the whole picture
+        const TileList* tiles = nullptr; // needed
         uint32_t width = 0, height = 0;
     };
     /// @param light    RGBA32F in VK_IMAGE_LAYOUT_GENERAL, noisy; filtered in place

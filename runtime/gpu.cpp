@@ -26,6 +26,7 @@ void Buffer::swap(Buffer& other) noexcept
 {
     std::swap(gpu, other.gpu);
     std::swap(buffer, other.buffer);
+    std::swap(view, other.view);
     std::swap(deviceAddress, other.deviceAddress);
     std::swap(bytes, other.bytes);
     std::swap(name, other.name);
@@ -41,6 +42,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept
 Buffer::~Buffer()
 {
     if (!gpu) return;
+    if (view) gpu->vk.DestroyBufferView(gpu->host.device, view, gpu->host.allocationCallbacks);
     gpu->vk.DestroyBuffer(gpu->host.device, buffer, gpu->host.allocationCallbacks);
     gpu->memory().release(piece);
 }
@@ -170,6 +172,21 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     made.deviceAddress = vk.GetBufferDeviceAddress(host.device, &addressInfo);
     if (scan) NanScan::note(made);
     return made;
+}
+
+Status Gpu::makeTexelView(Buffer& buffer)
+{
+    const VkDeviceSize texels = buffer.size() / 16;
+    if (texels > properties.limits.maxTexelBufferElements)
+        return Error{ErrorCode::missingFeature, std::string(buffer.what()) + " need a buffer of " + std::to_string(texels) +
+                                                    " texels; the device allows " +
+                                                    std::to_string(properties.limits.maxTexelBufferElements)};
+    VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+    info.buffer = buffer.handle();
+    info.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+    info.range = VK_WHOLE_SIZE;
+    const VkResult result = vk.CreateBufferView(host.device, &info, host.allocationCallbacks, &buffer.view);
+    return result == VK_SUCCESS ? success() : Status(failure("vkCreateBufferView", result));
 }
 
 Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)

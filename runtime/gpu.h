@@ -28,6 +28,7 @@ public:
     VkDeviceSize size() const { return bytes; }
     std::byte* mapped() const { return piece.mapped(); } // null for device memory
     const char* what() const { return name; }            // as it was made with
+    VkBufferView texels() const { return view; }         // null unless made by makeTexelBuffer
     explicit operator bool() const { return buffer != VK_NULL_HANDLE; }
 
 private:
@@ -35,6 +36,7 @@ private:
     void swap(Buffer& other) noexcept;
     Gpu* gpu = nullptr;
     VkBuffer buffer = VK_NULL_HANDLE;
+    VkBufferView view = VK_NULL_HANDLE;
     VkDeviceAddress deviceAddress = 0;
     VkDeviceSize bytes = 0;
     const char* name = "";
@@ -119,6 +121,14 @@ public:
         if (auto status = upload(*buffer, 0, std::as_bytes(values)); !status) return status.error();
         return buffer;
     }
+    /// Of RGBA32F texels, read-only to shaders. A missingFeature error where the device allows fewer.
+    template <class T> Result<Buffer> makeTexelBuffer(std::span<const T> values, const char* what)
+    {
+        auto buffer = makeBufferWith(values, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, what);
+        if (!buffer) return buffer.error();
+        if (auto status = makeTexelView(*buffer); !status) return status.error();
+        return buffer;
+    }
     void releaseStaging() { staging = Buffer(); }
 
     Error failure(const char* call, VkResult result) const;
@@ -126,6 +136,7 @@ public:
 private:
     explicit Gpu(const HostVulkan& lent);
     Status ensureStaging();
+    Status makeTexelView(Buffer& buffer);
     std::unique_ptr<GpuMemory> pool;
     VkCommandPool commandPool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;

@@ -59,10 +59,10 @@ Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
     uint32_t binding = 4;
     for (const GpuImage* image : images) set.write(binding++, image->view(), VK_IMAGE_LAYOUT_GENERAL);
     set.write(kTableBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
-    set.write(kTileBinding, tileList ? tileList->buffer() : frame);
+    set.write(kTileBinding, tileList->buffer());
     const auto fieldConstants = field->constants();
     std::vector<uint32_t> values(fieldConstants.begin(), fieldConstants.end());
-    values.push_back(tileList ? 1u : 0u);
+    values.push_back(tileList->constant());
     values.insert(values.end(), constants);
     const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
     auto built = Pipeline::compute(*gpu, shader, layouts, 0, values);
@@ -125,14 +125,13 @@ Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, c
     made.gpu = &gpu;
     made.field = &field;
     made.desc = desc;
-    auto frame = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
+    auto frame = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
     if (!frame) return frame.error();
     made.frame = std::move(*frame);
     const IndirectEffects& effects = desc.effects;
-    const bool any = effects.diffuse || effects.rough || effects.glossy || effects.mirror;
-    if (effects.tiles && any)
+    if (effects.diffuse || effects.rough || effects.glossy || effects.mirror)
     {
-        auto tiles = TileList::create(gpu, made.frame, desc.width, desc.height, made.everyLog());
+        auto tiles = TileList::create(gpu, made.frame, {desc.width, desc.height, made.everyLog(), effects.tiles});
         if (!tiles) return tiles.error();
         made.tileList = std::make_unique<TileList>(std::move(*tiles));
     }
@@ -183,7 +182,7 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
         gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
     }
     memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+                  VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const auto timed = [&](const char* name, auto&& work)
     {
         if (timer) timer->begin(cmd, name);
@@ -198,7 +197,7 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
               {
                   const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
                   pipeline.bind(cmd, sets);
-                  dispatchTiles(*gpu, cmd, tiles(), list, desc.width, desc.height, tilesLog);
+                  tileList->dispatch(cmd, list, tilesLog);
               });
     };
     const auto scan = [&](const char* name, std::initializer_list<const GpuImage*> images)

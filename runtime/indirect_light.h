@@ -47,7 +47,7 @@ public:
     const GpuImage& glossy() const { return glossyImage; }
     const GpuImage& mirror() const { return mirrorImage; }
     const GpuImage& counts() const { return countImage; } // RGBA32UI: probe, hand-offs, reads, unknown rays; of the traced terms
-    /// The tiles of each term, for the host's own passes over the terms; null when passes run over the whole picture.
+    /// The tiles of each term, for the host's own passes over the terms; null when no term is made.
     const TileList* tiles() const { return tileList.get(); }
     uint64_t deviceBytes() const;
 

@@ -110,7 +110,7 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
         made.bytes += part.buffer.size();
     }
     made.radianceHeld = !field.radiance.empty();
-    auto probes = gpu.makeBufferWith<gpu::ProbeHeader>(field.probes, 0, "probe headers");
+    auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, "probe headers");
     if (!probes) return probes.error();
     made.probes = std::move(*probes);
     auto block = gpu.makeBuffer(sizeof(FieldBlock), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "light field block");
@@ -125,7 +125,7 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     made.bytes += made.probes.size() + made.block.size() + field.octree.bytes();
 
     const DescriptorSet::Binding bindings[] = {
-        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}, {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);

@@ -70,12 +70,14 @@ VkDescriptorType DescriptorSet::typeOf(uint32_t binding) const
 void DescriptorSet::write(uint32_t binding, const Buffer& buffer)
 {
     const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
+    const VkBufferView view = buffer.texels();
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     write.dstSet = set;
     write.dstBinding = binding;
     write.descriptorCount = 1;
     write.descriptorType = typeOf(binding);
     write.pBufferInfo = &info;
+    write.pTexelBufferView = &view;
     gpu->vk.UpdateDescriptorSets(gpu->host.device, 1, &write, 0, nullptr);
 }
 

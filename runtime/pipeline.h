@@ -26,7 +26,7 @@ public:
 
     VkDescriptorSetLayout layout() const { return setLayout; }
     VkDescriptorSet handle() const { return set; }
-    void write(uint32_t binding, const Buffer& buffer);
+    void write(uint32_t binding, const Buffer& buffer); // a texel buffer by its view
     void write(uint32_t binding, VkImageView view, VkImageLayout imageLayout, VkSampler sampler = VK_NULL_HANDLE);
 
 private:

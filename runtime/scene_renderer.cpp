@@ -135,7 +135,7 @@ Status SceneRenderer::make()
         if (!made) return made.error();
         *target = std::move(*made);
     }
-    auto block = gpu.makeBuffer(sizeof(gpu::FrameView), 0, MemoryUse::device, "frame view");
+    auto block = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
     if (!block) return block.error();
     frameBlock = std::move(*block);
     gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -193,14 +193,14 @@ Status SceneRenderer::makeDiffuse()
             const auto ofField = field.constants();
             constants.assign(ofField.begin(), ofField.end());
         }
-        constants.push_back(indirect->tiles() ? 1u : 0u);
+        constants.push_back(indirect->tiles()->constant());
         if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings, sizeof(AreaPush),
                               scene.layout(), constants, traced ? field.layout() : VK_NULL_HANDLE);
             !s)
             return s;
         areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
-        areaSet.write(kTileBinding, indirect->tiles() ? indirect->tiles()->buffer() : frameBlock);
+        areaSet.write(kTileBinding, indirect->tiles()->buffer());
     }
     const Denoiser::Desc desc{scene.layout(),    gpu::kTermDiffuse, false,          settings.effects.temporal,
                               indirect->tiles(), settings.width,    settings.height};
@@ -345,8 +345,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
     gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
-    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
 
     const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
     if (timer) timer->begin(cmd, "direct light");
@@ -371,7 +370,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     {
         begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
         areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
-        dispatchTiles(gpu, cmd, indirect->tiles(), gpu::kTermDiffuse, settings.width, settings.height);
+        indirect->tiles()->dispatch(cmd, gpu::kTermDiffuse);
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "area light", indirect->diffuse());
     }

@@ -11,13 +11,14 @@ constexpr uint32_t kRuns = 2 * gpu::kListCount; // of passes, then of sparse pas
 
 } // namespace
 
-Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, uint32_t width, uint32_t height, uint32_t everyLog)
+Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& desc)
 {
     TileList made;
     made.gpu = &gpu;
-    made.across = (width + gpu::kTileSide - 1) / gpu::kTileSide;
-    made.down = (height + gpu::kTileSide - 1) / gpu::kTileSide;
-    const VkDeviceSize words = VkDeviceSize(gpu::kListCount) * made.across * made.down;
+    made.desc = desc;
+    made.across = (desc.width + gpu::kTileSide - 1) / gpu::kTileSide;
+    made.down = (desc.height + gpu::kTileSide - 1) / gpu::kTileSide;
+    const VkDeviceSize words = VkDeviceSize(gpu::kListCount + gpu::kTileSide) * made.across * made.down;
     auto lists =
         gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
@@ -28,7 +29,7 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, uint32_t width,
     made.set = std::move(*set);
     made.set.write(kTileBinding, made.lists);
     const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
-    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, std::span(&everyLog, 1));
+    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, std::span(&desc.everyLog, 1));
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
     return made;
@@ -51,18 +52,12 @@ void TileList::record(VkCommandBuffer cmd) const
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
 }
 
-void TileList::dispatch(VkCommandBuffer cmd, uint32_t list, bool sparse) const
+void TileList::dispatch(VkCommandBuffer cmd, uint32_t list, uint32_t everyLog) const
 {
-    gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (list + (sparse ? gpu::kListCount : 0)) * sizeof(gpu::TileRuns));
-}
-
-void dispatchTiles(Gpu& gpu, VkCommandBuffer cmd, const TileList* tiles, uint32_t list, uint32_t width, uint32_t height, uint32_t everyLog)
-{
-    const uint32_t across = (width + gpu::kTileSide - 1) / gpu::kTileSide, down = (height + gpu::kTileSide - 1) / gpu::kTileSide;
-    if (tiles)
-        tiles->dispatch(cmd, list, everyLog > 0);
+    if (desc.tiled)
+        gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (list + (everyLog > 0 ? gpu::kListCount : 0)) * sizeof(gpu::TileRuns));
     else
-        gpu.vk.CmdDispatch(cmd, across, ((down - 1) >> everyLog) + 1, 1);
+        gpu->vk.CmdDispatch(cmd, across, ((down - 1) >> everyLog) + 1, 1);
 }
 
 } // namespace sconce

@@ -39,6 +39,7 @@ namespace sconce
     X(CmdUpdateBuffer)                                                                                                                     \
     X(CmdWriteTimestamp2)                                                                                                                  \
     X(CreateBuffer)                                                                                                                        \
+    X(CreateBufferView)                                                                                                                    \
     X(CreateCommandPool)                                                                                                                   \
     X(CreateComputePipelines)                                                                                                              \
     X(CreateDescriptorPool)                                                                                                                \
@@ -52,6 +53,7 @@ namespace sconce
     X(CreateSampler)                                                                                                                       \
     X(CreateShaderModule)                                                                                                                  \
     X(DestroyBuffer)                                                                                                                       \
+    X(DestroyBufferView)                                                                                                                   \
     X(DestroyCommandPool)                                                                                                                  \
     X(DestroyDescriptorPool)                                                                                                               \
     X(DestroyDescriptorSetLayout)                                                                                                          \

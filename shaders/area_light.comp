@@ -27,22 +27,22 @@ layout(scalar, push_constant) uniform Push
 
 #ifdef SCONCE_FIELD_SHADOWS
 /// As lightAt() of lights.glsl.
-LightSample tracedLightAt(uint i, Pixel p, vec3 point, vec3 geometric)
+LightSample tracedLightAt(uint kind, uint i, Pixel p, vec3 point, vec3 geometric)
 {
-    LightSample s = unshadowedLight(i, point);
+    LightSample s = unshadowedLight(kind, i, point);
     if (dot(geometric, s.toLight) <= 0.0 || dot(p.normal, s.toLight) <= 0.0 || all(equal(s.irradiance, vec3(0.0))))
     {
         s.irradiance = vec3(0.0);
         return s;
     }
-    float far = lights[i].type == kLightSky ? 1e30 : distance(lights[i].position, point) * scale;
+    float far = kind == kLightSky ? 1e30 : distance(lights[i].position, point) * scale;
     if (!lightReaches(p.position + frame.normalOffset * geometric, s.toLight, far, geometric)) s.irradiance = vec3(0.0);
     return s;
 }
 #endif
 
-/// Mean over a subset of the lights [first, first + count), scaled to all of them, of their irradiance times the cosine.
-vec3 someLights(Pixel p, vec3 point, vec3 geometric, uint first, uint count, uint stream, ivec2 at)
+/// Mean over a subset of the lights [first, first + count), all of a kind, scaled to all of them, of their irradiance times the cosine.
+vec3 someLights(uint kind, Pixel p, vec3 point, vec3 geometric, uint first, uint count, uint stream, ivec2 at)
 {
     uint taken = min(samples, count);
     if (taken == 0u) return vec3(0.0);
@@ -52,9 +52,9 @@ vec3 someLights(Pixel p, vec3 point, vec3 geometric, uint first, uint count, uin
     {
         uint pick = min(uint((float(i) + start) / float(taken) * float(count)), count - 1u);
 #ifdef SCONCE_FIELD_SHADOWS
-        LightSample s = tracedLightAt(first + pick, p, point, geometric);
+        LightSample s = tracedLightAt(kind, first + pick, p, point, geometric);
 #else
-        LightSample s = lightAt(first + pick, point, geometric);
+        LightSample s = lightAt(kind, first + pick, point, geometric);
 #endif
         sum += max(dot(p.normal, s.toLight), 0.0) * s.irradiance;
     }
@@ -70,7 +70,7 @@ void main()
     vec3 light = imageLoad(diffuse, at).rgb;
     vec3 point = (p.position - origin) / scale;
     vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
-    vec3 irradiance = someLights(p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
-                      someLights(p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
+    vec3 irradiance = someLights(kLightEmitter, p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
+                      someLights(kLightSky, p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
     imageStore(diffuse, at, vec4(light + irradiance / SCONCE_BRDF_PI, 1.0));
 }

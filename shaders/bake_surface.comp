@@ -45,8 +45,7 @@ void main()
     words.word[wordIndex] = packTexel(q, gradient.x, gradient.y);
 
     vec3 albedo = baseColor * (1.0 - base.a) * 0.96 + mix(vec3(0.04), baseColor, base.a);
-    uint lightCount = lightsHeader.deltaCount + lightsHeader.emitterCount + lightsHeader.skyCount;
-    vec3 irradiance = directLight(p, shading, geometric, 0u, lightCount);
+    vec3 irradiance = directLight(p, shading, geometric);
     radiance.word[index] = packRadiance(emission + albedo * irradiance / SCONCE_BRDF_PI);
     if (!isNull(emitted)) emitted.word[index] = seen.w;
     surface.word[index] = max(packAlbedo(albedo, ditherOf(index)) | (packNormal8(shading) << 16), 1u); // 0 is the sky's

@@ -37,6 +37,7 @@ void main()
         imageStore(smooth_, at, own);
         return;
     }
+    Surroundings about = surroundingsOf(p);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int dy = -1; dy <= 1; ++dy)
@@ -45,9 +46,9 @@ void main()
             ivec2 tap = at + stride * ivec2(dx, dy);
             if (float(stride * stride * (dx * dx + dy * dy)) > reach * reach || any(lessThan(tap, ivec2(0))) ||
                 any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
+            if ((termsAt(tap) & (1u << kTerm)) == 0u) continue;
             Pixel q = readPixel(tap);
-            if ((termsOf(q) & (1u << kTerm)) == 0u) continue;
-            float weight = kHat[abs(dx)] * kHat[abs(dy)] * likeness(p, q);
+            float weight = kHat[abs(dx)] * kHat[abs(dy)] * likeness(about, q);
             sum += weight * imageLoad(noisy, tap).rgb / (kTerm == kTermGlossy ? tintOf(q) : vec3(1.0));
             weights += weight;
         }

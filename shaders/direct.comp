@@ -31,7 +31,7 @@ void main()
         vec3 point = (p.position - origin) / scale;
         for (uint i = 0u; i < lightCount; ++i)
         {
-            LightSample s = lightAt(i, point, geometric);
+            LightSample s = lightAt(lights[i].type, i, point, geometric);
             BrdfValue f = evaluateBrdf(p.brdf, p.normal, p.view, s.toLight);
             light += s.irradiance * max(dot(p.normal, s.toLight), 0.0) * (f.diffuse + f.specular);
         }

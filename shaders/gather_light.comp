@@ -30,6 +30,74 @@ vec2 reflectedShare(float cosine, float alpha)
     return mix(mix(environmentBrdf[i], environmentBrdf[i + 1], f.x), mix(environmentBrdf[i + n], environmentBrdf[i + n + 1], f.x), f.y);
 }
 
+// The probes that look-ups name, and how often: the weight of a probe doesn't depend on the look-up, so each is asked once and counted as often.
+// Vectors with constant indices: an array indexed by each lane is slow where lanes are vectors.
+const int kVoted = 2; // times 4: probes kept; a pixel's look-ups seldom name more
+struct Votes
+{
+    uvec4 probe[kVoted];
+    vec4 times[kVoted]; // 0 after the last
+};
+
+Votes noVotes()
+{
+    Votes votes;
+    for (int i = 0; i < kVoted; ++i) votes.probe[i] = uvec4(kNoProbe), votes.times[i] = vec4(0.0);
+    return votes;
+}
+
+/// Newest first; the oldest of too many is forgotten.
+void vote(inout Votes votes, uint probe)
+{
+    bool known = false;
+    for (int i = 0; i < kVoted; ++i)
+    {
+        bvec4 same = equal(votes.probe[i], uvec4(probe));
+        votes.times[i] += vec4(same);
+        known = known || any(same);
+    }
+    if (known) return;
+    for (int i = kVoted - 1; i >= 0; --i)
+    {
+        votes.probe[i] = uvec4(i > 0 ? votes.probe[i - 1].w : probe, votes.probe[i].xyz);
+        votes.times[i] = vec4(i > 0 ? votes.times[i - 1].w : 1.0, votes.times[i].xyz);
+    }
+}
+
+/// Takes the first out.
+uint nextVoted(inout Votes votes, out float times)
+{
+    uint probe = votes.probe[0].x;
+    times = votes.times[0].x;
+    for (int i = 0; i < kVoted; ++i)
+    {
+        votes.probe[i] = uvec4(votes.probe[i].yzw, i + 1 < kVoted ? votes.probe[i + 1].x : kNoProbe);
+        votes.times[i] = vec4(votes.times[i].yzw, i + 1 < kVoted ? votes.times[i + 1].x : 0.0);
+    }
+    return probe;
+}
+
+/// The probes with the largest weights, in order, and the largest weight of the others.
+struct Heaviest
+{
+    uvec4 probe;
+    vec4 weight;
+    float next;
+};
+const int kRoughProbes = 4; // that a rough reflection asks; at most 4
+
+void weigh(inout Heaviest h, uint probe, float weight)
+{
+    bvec4 after = greaterThan(vec4(weight), h.weight); // the places from which on all move
+    vec4 moved = vec4(weight, h.weight.xyz);
+    uvec4 movedProbe = uvec4(probe, h.probe.xyz);
+    h.next = max(h.next, min(weight, h.weight[kRoughProbes - 1]));
+    bvec4 here = bvec4(after.x, after.y && !after.x, after.z && !after.y, after.w && !after.z);
+    h.weight = mix(mix(h.weight, moved, after), vec4(weight), here);
+    h.probe = uvec4(here.x ? probe : after.x ? movedProbe.x : h.probe.x, here.y ? probe : after.y ? movedProbe.y : h.probe.y,
+                    here.z ? probe : after.z ? movedProbe.z : h.probe.z, here.w ? probe : after.w ? movedProbe.w : h.probe.w);
+}
+
 void main()
 {
     ivec2 at;
@@ -43,52 +111,57 @@ void main()
     float alpha = ggxAlpha(p.brdf.roughness);
     Lobe lobe = reflectedLobe(p.normal, p.view, alpha);
 
-    // The weight of a probe doesn't depend on the look-up that named it: each is asked once, and counted as often as it was named.
-    uint named[kLookUps * kRanked];
-    float times[kLookUps * kRanked]; // and then their weights
-    uint count = 0u;
+    Votes votes = noVotes();
     for (uint i = 0u; i < kLookUps; ++i)
     {
         vec2 along = (randomPair(uvec2(at), i, 1u, frame.seed) - 0.5) * 2.0 * field.voxel;
         int reads = 0;
-        uvec4 ranked = rankedProbesAt(point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal, reads);
-        for (uint k = 0u; k < uint(kRanked); ++k)
-        {
-            bool repeated = false;
-            for (uint j = 0u; j < k; ++j) repeated = repeated || ranked[j] == ranked[k];
-            if (repeated) continue;
-            uint found = 0u;
-            while (found < count && named[found] != ranked[k]) ++found;
-            if (found == count) named[count] = ranked[k], times[count++] = 0.0;
-            times[found] += 1.0;
-        }
+        uvec4 r = rankedProbesAt(point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal, reads);
+        vote(votes, r.x);
+        if (r.y != r.x) vote(votes, r.y);
+        if (r.z != r.x && r.z != r.y) vote(votes, r.z);
+        if (r.w != r.x && r.w != r.y && r.w != r.z) vote(votes, r.w);
     }
-    if (!canGather(point, p.normal)) count = 0u;
+    if (!canGather(point, p.normal)) votes = noVotes();
     vec3 arriving = vec3(0.0);
-    float weights = 1e-30, met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there
-    for (uint i = 0u; i < count; ++i)
+    float weights = 1e-30;
+    Heaviest heaviest = Heaviest(uvec4(0u), vec4(0.0), 0.0);
+    uint drawn = kNoProbe;
+    float lot = randomPair(uvec2(at), 0u, 5u, frame.seed).x;
+    while (votes.times[0].x > 0.0)
     {
-        times[i] *= weightOfProbe(named[i], point, p.normal);
-        weights += times[i];
-        if (wantDiffuse && !kByPatches) arriving += times[i] * probeIrradiance(named[i], p.normal);
-        float seen = wantRough ? seenAlong(named[i], point - probeHeader(named[i]).centre, lobe.direction) : 0.0;
-        if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+        float times;
+        uint probe = nextVoted(votes, times);
+        float weight = times * weightOfProbe(probe, point, p.normal);
+        weights += weight;
+        if (wantDiffuse && !kByPatches) arriving += weight * probeIrradiance(probe, p.normal);
+        if (wantRough) weigh(heaviest, probe, weight);
+        float share = weight / weights;
+        if (lot < share) drawn = probe, lot /= share;
+        else lot = (lot - share) / (1.0 - share);
     }
-    if (wantDiffuse && kByPatches && count > 0u)
-    {
-        // One probe, drawn by its say; the filter blends what neighbours drew.
-        float left = randomPair(uvec2(at), 0u, 5u, frame.seed).x * (weights - 1e-30);
-        uint drawn = 0u;
-        while (drawn + 1u < count && left >= times[drawn]) left -= times[drawn++];
-        arriving = weights * patchIrradiance(named[drawn], point - probeHeader(named[drawn]).centre, p.normal);
-    }
+    // One probe's patches, drawn by its say; the filter blends what neighbours drew.
+    if (wantDiffuse && kByPatches && drawn != kNoProbe)
+        arriving = weights * patchIrradiance(drawn, point - probeHeader(drawn).centre, p.normal);
     if (wantDiffuse) imageStore(diffuse, at, vec4(arriving / weights, 1.0));
     if (!wantRough) return;
-    vec3 inLobe = vec3(0.0);
-    for (uint i = 0u; i < count; ++i)
+
+    float met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there
+    for (int i = 0; i < kRoughProbes; ++i)
     {
-        vec3 fromProbe = point - probeHeader(named[i]).centre;
-        inLobe += times[i] * lobeRadiance(named[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(named[i], fromProbe, lobe.direction));
+        if (heaviest.weight[i] <= 0.0) continue;
+        float seen = seenAlong(heaviest.probe[i], point - probeHeader(heaviest.probe[i]).centre, lobe.direction);
+        if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+    }
+    vec3 inLobe = vec3(0.0);
+    weights = 1e-30;
+    for (int i = 0; i < kRoughProbes; ++i)
+    {
+        if (heaviest.weight[i] <= 0.0) continue;
+        float weight = heaviest.weight[i] - 0.999 * heaviest.next; // so that one that leaves the list has no say before
+        vec3 fromProbe = point - probeHeader(heaviest.probe[i]).centre;
+        inLobe += weight * lobeRadiance(heaviest.probe[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(heaviest.probe[i], fromProbe, lobe.direction));
+        weights += weight;
     }
     vec2 share = reflectedShare(dot(p.normal, p.view), alpha);
     imageStore(rough, at, vec4(inLobe / weights * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));

@@ -5,11 +5,12 @@
 layout(set = 1, binding = 0) uniform texture2D gDepth;           // r: reversed depth; 0 is the sky
 layout(set = 1, binding = 1) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness
 layout(set = 1, binding = 2) uniform texture2D gBaseColorMetallic; // rgb linear, a metallic
-layout(scalar, set = 1, binding = 3) readonly buffer SconceFrame { FrameView frame; };
+layout(scalar, set = 1, binding = 3) uniform SconceFrame { FrameView frame; };
 
 struct Pixel
 {
     bool surface;  // there is one; false too where the G-buffer's numbers are none
+    vec4 clip;
     vec3 position; // world, metres
     vec3 normal;   // on the viewer's side
     vec3 view;     // unit, towards the eye
@@ -24,7 +25,8 @@ Pixel readPixel(ivec2 at)
     Pixel p;
     float depth = texelFetch(gDepth, at, 0).r;
     vec2 ndc = (vec2(at) + 0.5) / vec2(frame.size) * 2.0 - 1.0;
-    vec4 world = frame.worldFromClip * vec4(ndc, depth, 1.0);
+    p.clip = vec4(ndc, depth, 1.0);
+    vec4 world = frame.worldFromClip * p.clip;
     p.position = world.xyz / world.w;
     vec4 normal = texelFetch(gNormalRoughness, at, 0);
     vec4 base = texelFetch(gBaseColorMetallic, at, 0);
@@ -39,12 +41,33 @@ Pixel readPixel(ivec2 at)
     return p;
 }
 
-/// How much two pixels show the same surface, [0,1]: 0 across edges of depth, of the shading normal and of roughness.
-float likeness(Pixel p, Pixel q)
+/// Of a pixel, to ask how much others show the same surface.
+struct Surroundings
 {
-    float plane = dot(q.position - p.position, p.normal) / (0.01 * distance(p.position, frame.eye));
-    float rough = (p.brdf.roughness - q.brdf.roughness) * 8.0;
-    return exp(-plane * plane - rough * rough) * pow(max(dot(p.normal, q.normal), 0.0), 32.0);
+    vec4 plane; // of clip space, not normalised; over the plane's point, in hundredths of the distance to the eye
+    vec4 w;     // worldFromClip's last row
+    vec3 normal;
+    float roughness;
+};
+
+Surroundings surroundingsOf(Pixel p)
+{
+    Surroundings s;
+    s.plane = vec4(p.normal, -dot(p.normal, p.position)) * frame.worldFromClip * (100.0 / distance(p.position, frame.eye));
+    s.w = vec4(0.0, 0.0, 0.0, 1.0) * frame.worldFromClip;
+    s.normal = p.normal;
+    s.roughness = p.brdf.roughness;
+    return s;
+}
+
+/// How much a pixel shows the same surface, [0,1]: 0 across edges of depth, of the shading normal and of roughness.
+float likeness(Surroundings s, Pixel q)
+{
+    float plane = dot(s.plane, q.clip) / dot(s.w, q.clip);
+    float rough = (s.roughness - q.brdf.roughness) * 8.0;
+    float facing = max(dot(s.normal, q.normal), 0.0);
+    facing *= facing, facing *= facing, facing *= facing, facing *= facing; // to the 16th
+    return exp(-plane * plane - rough * rough) * facing * facing;
 }
 
 /// Pixels that the filter of reflections reaches: as far as their lobe blurs.

@@ -21,7 +21,8 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
     uvec2 prefilteredAddress; // FieldData::prefiltered
     uvec2 patchAddress;       // FieldData::patches
 };
-layout(scalar, set = SCONCE_FIELD_SET, binding = 1) readonly buffer SconceProbes { ProbeHeader sconceProbes[]; };
+// FieldData::probes, 3 texels each: software Vulkan loads a texel for eight lanes in the time of a word of a storage buffer.
+layout(set = SCONCE_FIELD_SET, binding = 1) uniform textureBuffer sconceProbes;
 layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
 
 // Of a pass, so that one without them pays nothing: bit 0 TraceQuality::farBounds, bit 1 the octahedral chart. LightField::constants() holds it.
@@ -32,7 +33,11 @@ bool onOctahedron() { return (kFieldFlags & 2u) != 0u; }
 layout(constant_id = 1) const bool kHoldsRadiance = true;
 bool holdsRadiance() { return kHoldsRadiance; }
 
-ProbeHeader probeHeader(uint probe) { return sconceProbes[probe]; }
+ProbeHeader probeHeader(uint probe)
+{
+    vec4 a = texelFetch(sconceProbes, 3 * int(probe)), b = texelFetch(sconceProbes, 3 * int(probe) + 1), c = texelFetch(sconceProbes, 3 * int(probe) + 2);
+    return ProbeHeader(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+}
 uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
 uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }
 uint irradianceWord(uint index) { return SconceWords(irradianceAddress).word[index]; }

@@ -15,17 +15,19 @@ struct LightSample
 };
 
 /// The light of entry i at a point, without its shadow.
-LightSample unshadowedLight(uint i, vec3 p)
+/// @param kind  lights[i].type; a constant where the caller knows it, so that nothing of other kinds is in its way: software Vulkan (Mesa 22.3) takes
+///              every branch of a condition that it doesn't know
+LightSample unshadowedLight(uint kind, uint i, vec3 p)
 {
     GpuLight light = lights[i];
     LightSample s;
     s.toLight = -light.direction;
     s.irradiance = light.intensity;
-    if (light.type == kLightDirectional || light.type == kLightSky) return s;
+    if (kind == kLightDirectional || kind == kLightSky) return s;
     vec3 away = light.position - p;
     float d2 = max(dot(away, away), 1e-14);
     s.toLight = away * inversesqrt(d2);
-    if (light.type == kLightEmitter)
+    if (kind == kLightEmitter)
     {
         // A disc of the patch's area seen on its axis has exactly this form factor (Howell, "A Catalog of Radiation Heat Transfer
         // Configuration Factors", B-12 limit), so a receiver near the patch sees no singularity.
@@ -33,23 +35,23 @@ LightSample unshadowedLight(uint i, vec3 p)
         return s;
     }
     s.irradiance *= distanceAttenuation(sqrt(d2), light.range);
-    if (light.type == kLightSpot) s.irradiance *= spotAttenuation(dot(-s.toLight, light.direction), light.innerCone, light.outerCone);
+    if (kind == kLightSpot) s.irradiance *= spotAttenuation(dot(-s.toLight, light.direction), light.innerCone, light.outerCone);
     return s;
 }
 
 /// Share of the light of entry i that reaches a point. The receiver is moved along its normal by as much as its plane rises over the
 /// filter's footprint (Holbert 2011, "Saying Goodbye to Shadow Acne": normal offset grows with the sine of the angle): the angle to the
 /// map's axis, for it is along the map's plane that the footprint lies.
-float lightVisibility(uint i, vec3 p, vec3 geometricNormal, vec3 toLight)
+float lightVisibility(uint kind, uint i, vec3 p, vec3 geometricNormal, vec3 toLight)
 {
     GpuLight light = lights[i];
-    if (light.type == kLightDirectional || light.type == kLightSky)
+    if (kind == kLightDirectional || kind == kLightSky)
     {
         float c = dot(geometricNormal, toLight);
         float s = sqrt(max(0.0, 1.0 - c * c));
         vec4 q = vec4(p + (1.5 * s + 0.1) * light.shadowTexel * geometricNormal, 1.0);
         vec3 at = vec3(dot(light.shadowX, q), dot(light.shadowY, q), dot(light.shadowDepth, q));
-        if (light.type == kLightSky) return texture(sconceSkyShadows, vec4(at.xy, float(light.shadowLayer), at.z + 5e-5)); // D16
+        if (kind == kLightSky) return texture(sconceSkyShadows, vec4(at.xy, float(light.shadowLayer), at.z + 5e-5)); // D16
         return texture(sconceSunShadows, vec4(at.xy, float(light.shadowLayer), at.z + 1e-6));
     }
     vec3 from = p - light.position;
@@ -61,34 +63,40 @@ float lightVisibility(uint i, vec3 p, vec3 geometricNormal, vec3 toLight)
     if (uvw.z <= lightsHeader.pointNear) return 1.0; // nothing is nearer than the maps' near plane
     vec2 at = 0.5 * uvw.xy / uvw.z + 0.5;
     vec4 coordinate = vec4(at, float(light.shadowLayer + face), lightsHeader.pointNear / uvw.z * 1.0005);
-    return light.type == kLightEmitter ? texture(sconceEmitterShadows, coordinate) : texture(sconcePointShadows, coordinate);
+    if (kind == kLightEmitter) return texture(sconceEmitterShadows, coordinate);
+    return texture(sconcePointShadows, coordinate);
 }
 
 /// The light of entry i at a surface point, shadowed; irradiance is 0 where the surface's true side is turned away.
 /// @param geometricNormal  unit, on the side that is looked at
-LightSample lightAt(uint i, vec3 p, vec3 geometricNormal)
+LightSample lightAt(uint kind, uint i, vec3 p, vec3 geometricNormal)
 {
-    LightSample s = unshadowedLight(i, p);
+    LightSample s = unshadowedLight(kind, i, p);
     if (dot(geometricNormal, s.toLight) <= 0.0 || all(equal(s.irradiance, vec3(0.0))))
     {
         s.irradiance = vec3(0.0);
         return s;
     }
-    s.irradiance *= lightVisibility(i, p, geometricNormal, s.toLight);
+    s.irradiance *= lightVisibility(kind, i, p, geometricNormal, s.toLight);
     return s;
 }
 
-/// Irradiance of a surface from the lights [first, last), W/m^2.
-vec3 directLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal, uint first, uint last)
+vec3 directLightOf(uint kind, uint i, vec3 p, vec3 shadingNormal, vec3 geometricNormal)
+{
+    LightSample s = lightAt(kind, i, p, geometricNormal);
+    return max(dot(shadingNormal, s.toLight), 0.0) * s.irradiance;
+}
+
+/// Irradiance of a surface from all lights, W/m^2.
+vec3 directLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal)
 {
     vec3 sum = vec3(0.0);
-    for (uint i = first; i < last; ++i)
-    {
-        LightSample s = unshadowedLight(i, p);
-        float cosine = dot(shadingNormal, s.toLight);
-        if (cosine <= 0.0 || dot(geometricNormal, s.toLight) <= 0.0) continue;
-        sum += cosine * lightVisibility(i, p, geometricNormal, s.toLight) * s.irradiance;
-    }
+    uint i = 0u;
+    for (; i < lightsHeader.deltaCount; ++i) sum += directLightOf(lights[i].type, i, p, shadingNormal, geometricNormal);
+    uint emittersEnd = i + lightsHeader.emitterCount;
+    for (; i < emittersEnd; ++i) sum += directLightOf(kLightEmitter, i, p, shadingNormal, geometricNormal);
+    uint skyEnd = i + lightsHeader.skyCount;
+    for (; i < skyEnd; ++i) sum += directLightOf(kLightSky, i, p, shadingNormal, geometricNormal);
     return sum;
 }
 

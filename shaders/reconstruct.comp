@@ -19,13 +19,14 @@ void main()
     if (!findPixel(kTerm, at)) return;
     Pixel p = readPixel(at);
     if ((termsOf(p) & (1u << kTerm)) == 0u || imageLoad(light, at).a != kNotTraced) return;
+    Surroundings about = surroundingsOf(p);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     for (int i = 0; i < 9; ++i)
     {
         ivec2 tap = latticePixel(cellAbout(at, i));
         Pixel q;
-        float weight = latticeWeight(p, at, tap, kTerm, q);
+        float weight = latticeWeight(about, at, tap, kTerm, q);
         if (weight <= 0.0) continue;
         vec4 value = imageLoad(light, tap);
         if (kTerm == kTermGlossy) value.rgb /= tintOf(q);

@@ -18,13 +18,13 @@ ivec2 latticePixel(ivec2 cell)
 /// What a traced pixel says of another, [0,1]: 0 across edges, outside the picture and where it lacks the term (Bala, Walter, Greenberg 2003,
 /// "Combining Edges and Points for Interactive High-Quality Rendering", interpolate between sparse samples and never over an edge).
 /// @param q  the traced pixel's surface, for whom a weight > 0 is returned
-float latticeWeight(Pixel p, ivec2 at, ivec2 tap, uint term, out Pixel q)
+float latticeWeight(Surroundings about, ivec2 at, ivec2 tap, uint term, out Pixel q)
 {
     vec2 away = abs(vec2(tap - at)) / (kTent * vec2(kCell));
     if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(frame.size))) || max(away.x, away.y) >= 1.0) return 0.0;
     q = readPixel(tap);
     if ((termsOf(q) & (1u << term)) == 0u) return 0.0;
-    return (1.0 - away.x) * (1.0 - away.y) * likeness(p, q);
+    return (1.0 - away.x) * (1.0 - away.y) * likeness(about, q);
 }
 
 /// The nine cells about a pixel's, its own first.
@@ -35,10 +35,11 @@ bool isTraced(Pixel p, ivec2 at, uint term)
 {
     if (latticePixel(at / kCell) == at) return true;
     if (term == kTermGlossy && filterReach(p.brdf.roughness) < float(kCell.x)) return true;
+    Surroundings about = surroundingsOf(p);
     for (int i = 0; i < 9; ++i)
     {
         Pixel q;
-        if (latticeWeight(p, at, latticePixel(cellAbout(at, i)), term, q) >= kLeastWeight) return false;
+        if (latticeWeight(about, at, latticePixel(cellAbout(at, i)), term, q) >= kLeastWeight) return false;
     }
     return true;
 }

@@ -30,7 +30,7 @@ void neighbourhood(ivec2 at, out vec3 mean, out vec3 deviation)
         for (int dx = -1; dx <= 1; ++dx)
         {
             ivec2 tap = clamp(at + ivec2(dx, dy), ivec2(0), ivec2(frame.size) - 1);
-            if ((termsOf(readPixel(tap)) & (1u << kTerm)) == 0u) continue;
+            if ((termsAt(tap) & (1u << kTerm)) == 0u) continue;
             vec3 value = imageLoad(light, tap).rgb;
             sum += value;
             squares += value * value;

@@ -7,7 +7,8 @@ layout(scalar, set = 1, binding = 8) readonly buffer SconceTiles
 {
     TileRuns runs[kListCount];
     TileRuns sparseRuns[kListCount]; // of passes whose workgroups take several tiles each
-    uint tiles[]; // [list][as many as the picture has]: x | y << 16
+    // [list][as many as the picture has]: x | y << 16; then [tile][row]: the terms of its 8 pixels, kTermCount bits each
+    uint tiles[];
 };
 
 uint tileCount(uint list)
@@ -24,6 +25,14 @@ ivec2 tileOrigin(uint list, uint index)
     if (!kTiled) return int(kTileSide) * ivec2(index % all.x, index / all.x);
     uint tile = tiles[list * all.x * all.y + index];
     return int(kTileSide) * ivec2(tile & 0xffffu, tile >> 16);
+}
+
+/// As termsOf(readPixel(at)) for a pixel of the picture.
+uint termsAt(ivec2 at)
+{
+    uvec2 tile = uvec2(at) / kTileSide, all = (frame.size + kTileSide - 1u) / kTileSide;
+    uint row = kListCount * all.x * all.y + kTileSide * (tile.y * all.x + tile.x) + uint(at.y) % kTileSide;
+    return (tiles[row] >> (kTermCount * (uint(at.x) % kTileSide))) & ((1u << kTermCount) - 1u);
 }
 
 uint workgroupIndex() { return gl_WorkGroupID.y * (kTiled ? kTileRow : gl_NumWorkGroups.x) + gl_WorkGroupID.x; }

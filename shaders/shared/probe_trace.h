@@ -108,19 +108,21 @@ SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
         for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
         {
             if (k >= quality.ranked) break;
+            vec3 centre = vec3(probeHeader(ranked[k]).centre); // outside of the branches, which lanes beside each other all take
+            bool tried = wasTried(r.tried, ranked[k]);
             if (opinion)
             {
-                vec3 to = vec3(probeHeader(ranked[k]).centre) - (r.origin + r.t * r.direction);
-                bool asked = ranked[k] == r.probe || (fromEntry && wasTried(r.tried, ranked[k]));
+                vec3 to = centre - (r.origin + r.t * r.direction);
+                bool asked = ranked[k] == r.probe || (fromEntry && tried);
                 if (!asked && dot(to, to) < best && dot(to, hitNormal) > real(0.0))
                 {
                     best = dot(to, to);
                     found = ranked[k];
                 }
             }
-            else if (found == kNoProbe && !wasTried(r.tried, ranked[k]))
+            else if (found == kNoProbe && !tried)
             {
-                bool faces = !starts || dot(vec3(probeHeader(ranked[k]).centre) - r.origin, r.startNormal) >= real(0.0);
+                bool faces = !starts || dot(centre - r.origin, r.startNormal) >= real(0.0);
                 if (faces) found = ranked[k];
                 else if (behind == kNoProbe) behind = ranked[k];
             }
