@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Each effect alone: its error against the path tracer, its passes' time, and a row of a sheet: ours, reference, error in false colours.
+# Each effect alone: its error against the path tracer, its passes' time, and a row of a sheet: the layer that is judged, ours, reference, error in
+# false colours.
 # Prints a Markdown table, writes OUT/effects.png.
 # Environment: SCONCE=the command, built when not given, SIZE=WxH [160x90], SPP=paths a pixel [256], SCONCE_SCENES [../shared/scenes],
 # OUT=folder [out/sheet].
@@ -27,11 +28,11 @@ while IFS='|' read -r effect scene count layer passes options truth baked; do
         "$sconce" bake "$baked" --probes "$field.probes.json" --resolution 416 --bounces 4 --effects all -o "$field" --quiet > /dev/null
     fi
     # shellcheck disable=SC2086 # options are several words
-    [[ -f $reference.exr ]] || "$sconce" reference "$scene" --size "$size" --spp "$spp" --bounces 4 $truth -o "$reference.exr" --png "$reference.png" --quiet > /dev/null
+    [[ -f $reference.exr ]] || "$sconce" reference "$scene" --size "$size" --spp "$spp" --bounces 4 $truth -o "$reference.exr" --quiet > /dev/null
     # shellcheck disable=SC2086
-    "$sconce" render "$scene" --field "$field" --size "$size" --frames 5 $options -o "$at.exr" --png "$at.png" --json --quiet > "$at.json" 2> "$at.log"
-    "$sconce" compare "$at.exr" "$reference.exr" --layer "$layer" --metric relmse,flip -o "$at.error.png" --json > "$at.error.json"
-    pictures+=("$at.png" "$reference.png" "$at.error.png")
+    "$sconce" render "$scene" --field "$field" --size "$size" --frames 5 $options -o "$at.exr" --json --quiet > "$at.json" 2> "$at.log"
+    "$sconce" compare "$at.exr" "$reference.exr" --layer "$layer" --metric relmse,flip --side-by-side "$at.png" --json > "$at.error.json"
+    pictures+=("$at.png")
     python3 - "$at" "$effect" "$name" "$layer" "$passes" <<'P'
 import json, sys
 at, effect, name, layer, passes = sys.argv[1:]
@@ -55,4 +56,4 @@ sky|temple|16|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
 curtains, leaves|$scenes/sponza/Sponza.gltf|54|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse|
 moving object|$out/guest.gltf|12|beauty|gather light,glossy trace,glossy denoise,area light,diffuse denoise|--effects auto||$out/host.gltf
 LIST
-python3 bench/sheet.py "$out/effects.png" 3 "${pictures[@]}"
+python3 bench/sheet.py "$out/effects.png" 1 "${pictures[@]}"

@@ -2,7 +2,8 @@
 # The trace pass of whole frames, tracer against tracer: every surface glossy (roughness 0.15), one ray a pixel, the same picture and device, in
 # turns. Prints a Markdown table; ratios, of the medians and of the least times, are to the last field's.
 #   bench/frame_times.sh SCENE TRACER=FIELD.sconce...       tracers as `sconce render --tracer` names them
-# Environment: SCONCE=the command, built when not given, SIZE=WxH [960x540], FRAMES=N a turn [5], TURNS=N [4], OUT=folder [out/frames].
+# Environment: SCONCE=the command, built when not given, SIZE=WxH [960x540], FRAMES=N a turn [5], TURNS=N [4], OUT=folder [out/frames],
+# CAMERA="--eye ... --target ... --fov ..." [the scene's own].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scene=$1; shift
@@ -13,7 +14,7 @@ mkdir -p "$out"
 for ((turn = 0; turn < turns; ++turn)); do
     for i in $(seq $#); do
         entry=${!i}
-        "$sconce" render "$scene" --tracer "${entry%%=*}" --field "${entry#*=}" --size "$size" --frames "$frames" --roughness 0.15 --rays-below 2 \
+        "$sconce" render "$scene" ${CAMERA:-} --tracer "${entry%%=*}" --field "${entry#*=}" --size "$size" --frames "$frames" --roughness 0.15 --rays-below 2 \
             --no-denoise --effects glossy -o "$out/$i.exr" --json --quiet > "$out/$i.$turn.json" 2>> "$out/log"
         echo "turn $turn: $entry" >&2
     done

@@ -151,4 +151,18 @@ Status writeErrorMap(const CompareResult& result, const std::filesystem::path& p
     return writePng(errorColours(result.errorMap), result.width, result.height, png);
 }
 
+Status writeSideBySide(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings, const CompareResult& result,
+                       const std::filesystem::path& png)
+{
+    const std::vector<float>&left = a.find(settings.layer)->pixels, &right = reference.find(settings.layer)->pixels;
+    const float exposure = settings.exposure.value_or(autoExposure(right));
+    const std::vector<float> panels[] = {toneMap(left, exposure), toneMap(right, exposure), errorColours(result.errorMap)};
+    const size_t row = size_t(3) * result.width;
+    std::vector<float> sheet;
+    sheet.reserve(3 * row * result.height);
+    for (size_t y = 0; y < result.height; ++y)
+        for (const std::vector<float>& panel : panels) sheet.insert(sheet.end(), panel.begin() + y * row, panel.begin() + (y + 1) * row);
+    return writePng(sheet, 3 * result.width, result.height, png);
+}
+
 } // namespace sconce

@@ -48,5 +48,8 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
 /// The map in false colours from black over purple to yellow (magma, Smith and van der Walt 2015), as linear RGB for writePng.
 std::vector<float> errorColours(std::span<const float> errorMap);
 Status writeErrorMap(const CompareResult& result, const std::filesystem::path& png);
+/// The compared layer of both, tone-mapped alike, and the error map, beside each other. `settings` and `result`: of compareImages() before.
+Status writeSideBySide(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings, const CompareResult& result,
+                       const std::filesystem::path& png);
 
 } // namespace sconce

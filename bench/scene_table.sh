@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Takes every real scene through check, place, bake and render and prints a table of times and peak memory.
-# Environment: SCONCE_SCENES [../shared/scenes], COUNT=probes [32], RESOLUTION=texels [256], SIZE=WxH [480x270], OUT=folder [out/scenes].
+# Environment: SCONCE=the command, built when not given, SCONCE_SCENES [../shared/scenes], COUNT=probes [32], RESOLUTION=texels [256], SIZE=WxH [480x270], OUT=folder [out/scenes].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scenes=${SCONCE_SCENES:-../shared/scenes}
 out=${OUT:-out/scenes} count=${COUNT:-32} resolution=${RESOLUTION:-256} size=${SIZE:-480x270}
-sconce=build/release/tools/sconce
-[[ -x $sconce ]] || tools/build.sh release sconce_command
+[[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
+sconce=${SCONCE:-build/release/tools/sconce}
 mkdir -p "$out"
 
 value() { python3 -c 'import functools, json, sys; v = functools.reduce(lambda d, k: d.get(k, {}), sys.argv[2].split("."), json.load(open(sys.argv[1]))); print(round(v, 4) if isinstance(v, float) else v)' "$1" "$2"; }

@@ -174,7 +174,7 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     return made;
 }
 
-Status Gpu::makeTexelView(Buffer& buffer)
+Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
 {
     const VkDeviceSize texels = buffer.size() / 16;
     if (texels > properties.limits.maxTexelBufferElements)
@@ -183,7 +183,7 @@ Status Gpu::makeTexelView(Buffer& buffer)
                                                     std::to_string(properties.limits.maxTexelBufferElements)};
     VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
     info.buffer = buffer.handle();
-    info.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+    info.format = format;
     info.range = VK_WHOLE_SIZE;
     const VkResult result = vk.CreateBufferView(host.device, &info, host.allocationCallbacks, &buffer.view);
     return result == VK_SUCCESS ? success() : Status(failure("vkCreateBufferView", result));

@@ -121,12 +121,12 @@ public:
         if (auto status = upload(*buffer, 0, std::as_bytes(values)); !status) return status.error();
         return buffer;
     }
-    /// Of RGBA32F texels, read-only to shaders. A missingFeature error where the device allows fewer.
-    template <class T> Result<Buffer> makeTexelBuffer(std::span<const T> values, const char* what)
+    /// @param format  of texels of 16 bytes, read-only to shaders. A missingFeature error where the device allows fewer.
+    template <class T> Result<Buffer> makeTexelBuffer(std::span<const T> values, VkFormat format, const char* what)
     {
         auto buffer = makeBufferWith(values, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, what);
         if (!buffer) return buffer.error();
-        if (auto status = makeTexelView(*buffer); !status) return status.error();
+        if (auto status = makeTexelView(*buffer, format); !status) return status.error();
         return buffer;
     }
     void releaseStaging() { staging = Buffer(); }
@@ -136,7 +136,7 @@ public:
 private:
     explicit Gpu(const HostVulkan& lent);
     Status ensureStaging();
-    Status makeTexelView(Buffer& buffer);
+    Status makeTexelView(Buffer& buffer, VkFormat format);
     std::unique_ptr<GpuMemory> pool;
     VkCommandPool commandPool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;

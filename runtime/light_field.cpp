@@ -22,9 +22,8 @@ struct FieldBlock // as shaders/light_field.glsl declares it
     VkDeviceAddress radiance;
     VkDeviceAddress irradiance;
     VkDeviceAddress prefiltered;
-    VkDeviceAddress patches;
 };
-static_assert(sizeof(FieldBlock) == 264);
+static_assert(sizeof(FieldBlock) == 256);
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
@@ -100,8 +99,7 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     };
     for (const Part& part :
          {Part{made.distance, field.distance, "probe distances"}, Part{made.radiance, field.radiance, "probe radiance"},
-          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"},
-          Part{made.patches, field.patches, "probe patches"}})
+          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"}})
     {
         if (part.words.empty()) continue;
         auto buffer = gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
@@ -110,9 +108,15 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
         made.bytes += part.buffer.size();
     }
     made.radianceHeld = !field.radiance.empty();
-    auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, "probe headers");
+    auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, VK_FORMAT_R32G32B32A32_SFLOAT, "probe headers");
     if (!probes) return probes.error();
     made.probes = std::move(*probes);
+    made.patchesHeld = !field.patches.empty();
+    const std::vector<uint32_t> noPatches(4); // the binding still wants a buffer
+    auto patches =
+        gpu.makeTexelBuffer<uint32_t>(made.patchesHeld ? field.patches : noPatches, VK_FORMAT_R32G32B32A32_UINT, "probe patches");
+    if (!patches) return patches.error();
+    made.patches = std::move(*patches);
     auto block = gpu.makeBuffer(sizeof(FieldBlock), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "light field block");
     if (!block) return block.error();
     made.block = std::move(*block);
@@ -122,15 +126,18 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     auto octree = uploadOctree(gpu, field.octree.texels.empty() ? empty : field.octree);
     if (!octree) return octree.error();
     made.octree = std::move(*octree);
-    made.bytes += made.probes.size() + made.block.size() + field.octree.bytes();
+    made.bytes += made.probes.size() + made.patches.size() + made.block.size() + field.octree.bytes();
 
-    const DescriptorSet::Binding bindings[] = {
-        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}, {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                                               {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                               {3, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
     made.set.write(0, made.block);
     made.set.write(1, made.probes);
+    made.set.write(3, made.patches);
     made.set.write(2, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     if (auto status = made.setQuality(quality); !status) return status.error();
     return made;
@@ -140,8 +147,7 @@ Status LightField::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const FieldBlock values{
-        fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(), patches.address()};
+    const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 

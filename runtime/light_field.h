@@ -27,7 +27,7 @@ public:
     std::array<uint32_t, 2> constants() const;
     bool holdsRadiance() const { return radianceHeld; }              // as rays need it
     bool holdsPrefiltered() const { return prefiltered.size() > 0; } // as rough reflections need it
-    bool holdsPatches() const { return patches.size() > 0; }         // as diffuse light by patches needs them
+    bool holdsPatches() const { return patchesHeld; }                // as diffuse light by patches needs them
     /// Takes effect for command buffers submitted after it. Not while the GPU reads the field.
     Status setQuality(const Quality& quality);
 
@@ -36,7 +36,7 @@ private:
     Gpu* gpu = nullptr;
     gpu::LightFieldInfo fieldInfo{};
     Buffer block, probes, distance, radiance, irradiance, prefiltered, patches;
-    bool readsFarBounds = false, radianceHeld = false;
+    bool readsFarBounds = false, radianceHeld = false, patchesHeld = false;
     GpuImage octree;
     DescriptorSet set;
     uint64_t bytes = 0;

@@ -12,13 +12,13 @@ namespace sconce
 class TileList
 {
 public:
-    /// @param frame     the gpu::FrameView
     struct Desc
     {
         uint32_t width = 0, height = 0; // pixels
         uint32_t everyLog = 0;          // log2 of the tiles that a workgroup of a sparse pass takes
         bool tiled = true;              // false: passes run over the whole picture, with the same pixels
     };
+    /// @param frame  the gpu::FrameView, a uniform buffer
     static Result<TileList> create(Gpu& gpu, const Buffer& frame, const Desc& desc);
     void setInputs(const FrameInputs& inputs) { writeInputs(set, inputs); }
     /// Ends with the barrier that lets passes run by the lists.

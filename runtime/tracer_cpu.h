@@ -79,9 +79,10 @@ template <class Real> struct LightFieldTwin
     {
         return source.irradiance[index];
     }
-    uint patchWord(uint index) const
+    uvec4 patchWords(uint pair) const
     {
-        return source.patches[index];
+        const uint* words = source.patches.data() + 4 * pair;
+        return uvec4(words[0], words[1], words[2], words[3]);
     }
     uint prefilteredWord(uint index) const
     {

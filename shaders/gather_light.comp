@@ -32,7 +32,7 @@ vec2 reflectedShare(float cosine, float alpha)
 
 // The probes that look-ups name, and how often: the weight of a probe doesn't depend on the look-up, so each is asked once and counted as often.
 // Vectors with constant indices: an array indexed by each lane is slow where lanes are vectors.
-const int kVoted = 2; // times 4: probes kept; a pixel's look-ups seldom name more
+const int kVoted = 2; // times 4: probes kept of up to 16, for the same relMSE of diffuse light within 0.1 % in five scenes (docs/light.md)
 struct Votes
 {
     uvec4 probe[kVoted];

@@ -19,10 +19,11 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
     uvec2 radianceAddress;   // FieldData::radiance
     uvec2 irradianceAddress; // FieldData::irradiance
     uvec2 prefilteredAddress; // FieldData::prefiltered
-    uvec2 patchAddress;       // FieldData::patches
 };
-// FieldData::probes, 3 texels each: software Vulkan loads a texel for eight lanes in the time of a word of a storage buffer.
+// Texels of four words, which software Vulkan loads in less time than as many words of a storage buffer: FieldData::probes, 3 texels each, and
+// FieldData::patches, a texel for two.
 layout(set = SCONCE_FIELD_SET, binding = 1) uniform textureBuffer sconceProbes;
+layout(set = SCONCE_FIELD_SET, binding = 3) uniform utextureBuffer sconcePatches;
 layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
 
 // Of a pass, so that one without them pays nothing: bit 0 TraceQuality::farBounds, bit 1 the octahedral chart. LightField::constants() holds it.
@@ -41,7 +42,7 @@ ProbeHeader probeHeader(uint probe)
 uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
 uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }
 uint irradianceWord(uint index) { return SconceWords(irradianceAddress).word[index]; }
-uint patchWord(uint index) { return SconceWords(patchAddress).word[index]; }
+uvec4 patchWords(uint pair) { return texelFetch(sconcePatches, int(pair)); }
 uint prefilteredWord(uint index) { return SconceWords(prefilteredAddress).word[index]; }
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 

@@ -57,7 +57,7 @@ int runReference(const ReferenceOptions& options, const Context& context)
 
 struct CompareOptions
 {
-    std::string picture, reference, metrics = "mse,relmse,psnr,flip", diff, layer = "beauty";
+    std::string picture, reference, metrics = "mse,relmse,psnr,flip", diff, sideBySide, layer = "beauty";
     std::vector<std::string> limits;
     std::optional<float> exposure;
 };
@@ -96,6 +96,9 @@ int runCompare(const CompareOptions& options, const Context& context)
     if (!result) return fail(result.error());
     if (!options.diff.empty())
         if (Status status = writeErrorMap(*result, options.diff); !status) return fail(status.error());
+    if (!options.sideBySide.empty())
+        if (Status status = writeSideBySide(*picture, *reference, settings, *result, options.sideBySide); !status)
+            return fail(status.error());
 
     const std::pair<const char*, std::optional<double>> values[] = {
         {"mse", result->mse}, {"relmse", result->relMse}, {"psnr", result->psnr}, {"flip", result->flip}};
@@ -169,14 +172,18 @@ void addReferenceCommands(CLI::App& app, Context& context)
         ->type_name("METRIC=X");
     compare->add_option("--layer", compareOptions->layer, "Layer that is compared (default: beauty)")->type_name("NAME");
     compare
-        ->add_option(
-            "--exposure", compareOptions->exposure,
-            "For psnr and flip (default: psnr from the reference's log-average, flip over a sweep of exposures; range: 1e-6 to 1e6)")
+        ->add_option("--exposure", compareOptions->exposure,
+                     "For psnr, flip and --side-by-side (default: from the reference's log-average, flip over a sweep of exposures; range: "
+                     "1e-6 to 1e6)")
         ->check(unlisted(CLI::Range(1e-6f, 1e6f)))
         ->type_name("FACTOR");
     compare
         ->add_option("-o,--output", compareOptions->diff,
                      "PNG of the error in false colours: flip, or relative error without flip (default: none)")
+        ->type_name("FILE");
+    compare
+        ->add_option("--side-by-side", compareOptions->sideBySide,
+                     "PNG of the layer of both, tone-mapped alike, and the error in false colours (default: none)")
         ->type_name("FILE");
     onChosen(compare, context, compareOptions, runCompare);
 }

@@ -1,5 +1,5 @@
 // What light the probe maps hold: radiance at a traced hit and prefiltered irradiance at a point. Shared text, see probe_trace.h; needs
-// radianceWord(uint), irradianceWord(uint), patchWord(uint) and holdsRadiance() besides.
+// radianceWord(uint), irradianceWord(uint), patchWords(uint) and holdsRadiance() besides.
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {
@@ -135,23 +135,25 @@ SCONCE_CONST real kHiddenShare = real(0.5);
 /// radiance. The point is lit by it as a disc is seen (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-12's limit), from
 /// where the point is, not from where the probe is: so it is right about what is near, which prefiltered irradiance is not. The patches are virtual point
 /// lights (Keller 1997, "Instant Radiosity") of a probe. What of the hemisphere they leave open is hidden from the probe.
-/// Cost: 2 kPatches reads.
+/// Cost: kPatches / 2 reads of four words.
 /// @param fromProbe  the point relative to the probe's centre, field units
 SCONCE_FN vec3 patchIrradiance(uint probe, vec3 fromProbe, vec3 normal)
 {
     real pi = real(3.14159265358979);
     vec3 sum = vec3(real(0.0));
     real covered = real(0.0); // of the hemisphere, by the cosine
-    uint word = 2u * kPatches * probe;
+    uvec4 words = uvec4(0u);  // of two patches
     for (int face = 0; face < 6; ++face)
-        for (int cell = 0; cell < kPatchSide * kPatchSide; ++cell, word += 2u)
+        for (int cell = 0; cell < kPatchSide * kPatchSide; ++cell)
         {
+            if ((cell & 1) == 0) words = patchWords((probe * kPatches + uint(face * kPatchSide * kPatchSide + cell)) / 2u);
+            uint place = (cell & 1) == 0 ? words.x : words.z;
+            uint radiance = (cell & 1) == 0 ? words.y : words.w;
             real u = real(2 * (cell % kPatchSide) + 1) / real(kPatchSide) - real(1.0);
             real v = real(2 * (cell / kPatchSide) + 1) / real(kPatchSide) - real(1.0);
             real stretch = sqrt(real(1.0) + u * u + v * v);
             real solid = real(4.0) / (real(kPatchSide * kPatchSide) * stretch * stretch * stretch); // angle of the window
             vec3 towards = faceDirection(face, vec3(u, v, real(1.0)));
-            uint place = patchWord(word);
             real q = halfToReal(place); // 1 / W, as of a texel
             if (q == real(0.0)) // sky
             {
@@ -165,7 +167,7 @@ SCONCE_FN vec3 patchIrradiance(uint probe, vec3 fromProbe, vec3 normal)
             real area = solid * stretch * stretch / (q * q * max(-dot(towards, facing) / stretch, real(0.1)));
             real factor = cosines * area / (pi * d2 + area);
             covered += factor;
-            sum += factor * unpackRadiance(patchWord(word + 1u));
+            sum += factor * unpackRadiance(radiance);
         }
     return sum / max(covered, real(1.0)) + kHiddenShare * max(real(1.0) - covered, real(0.0)) * probeIrradiance(probe, normal);
 }

@@ -373,12 +373,14 @@ TEST(Command, ReferenceAndCompareAgree)
     const json same = jsonOf(sconceCommand({"compare", folder / "a.exr", folder / "a.exr", "--json", "--fail-above", "flip=0"}));
     EXPECT_EQ(same.at("mse"), 0.0);
     EXPECT_TRUE(same.at("psnr").is_null()); // infinite
-    const CommandResult other =
-        sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--metric", "mse,flip", "--json", "-o", folder / "diff.png"});
+    const CommandResult other = sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--metric", "mse,flip", "--json", "-o",
+                                               folder / "diff.png", "--side-by-side", folder / "beside.png"});
     EXPECT_EQ(other.exit, 0);
     EXPECT_GT(jsonOf(other).at("mse").get<double>(), 0.0);
     EXPECT_FALSE(jsonOf(other).contains("psnr"));
     EXPECT_EQ(readText(folder / "diff.png").substr(1, 3), "PNG");
+    const auto widthOf = [](const std::string& png) { return uint8_t(png[18]) * 256 + uint8_t(png[19]); }; // big-endian, under 65,536
+    EXPECT_EQ(widthOf(readText(folder / "beside.png")), 3 * widthOf(readText(folder / "diff.png")));
     EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--fail-above", "mse=1e-12"}).exit, 1);
     EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--fail-above", "psnr=500"}).exit, 1);
     EXPECT_EQ(sconceCommand({"compare", folder / "b.exr", folder / "a.exr", "--fail-above", "flip=1", "--fail-above", "mse=1e9"}).exit, 0);
