@@ -318,7 +318,8 @@ Json breaksOf(const std::vector<Json>& points, const Json* base)
 
 std::optional<double> halvingCost(double errorRatio, double timeRatio)
 {
-    if (!(errorRatio > 0.0 && timeRatio > 0.0) || std::abs(std::log(errorRatio)) < kChange) return {};
+    constexpr double least = 1.2; // a step that changes the error by less, taken as often as it needs to halve it, gave factors of 1e7
+    if (!(errorRatio > 0.0 && timeRatio > 0.0) || std::abs(std::log(errorRatio)) < std::log(least)) return {};
     return std::pow(timeRatio, std::log(0.5) / std::log(errorRatio));
 }
 

@@ -21,7 +21,7 @@ std::vector<std::string> answersOf(const Json& results);
 std::vector<std::string> paretoFront(std::span<const Json* const> points, std::string_view errorKey, std::string_view costKey);
 
 /// From an error and a time ratio of one step: by what the time is multiplied when the error is halved, time ~ error^k. None where the
-/// error hardly changes or a ratio isn't positive.
+/// error changes by less than a fifth or a ratio isn't positive.
 std::optional<double> halvingCost(double errorRatio, double timeRatio);
 
 } // namespace sconce
