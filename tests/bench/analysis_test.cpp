@@ -143,7 +143,7 @@ TEST(Analysis, HalvingTheErrorCostsWhatTheStepSays)
     EXPECT_DOUBLE_EQ(*halvingCost(0.25, 4.0), 2.0); // a quarter for four times: a half for twice
     EXPECT_DOUBLE_EQ(*halvingCost(2.0, 0.5), 2.0);  // the same step, seen from the better end
     EXPECT_DOUBLE_EQ(*halvingCost(0.5, 0.5), 0.5);  // better and faster
-    EXPECT_FALSE(halvingCost(1.03, 0.54)); // a price of 2.5e7 times the memory, once
+    EXPECT_FALSE(halvingCost(1.03, 0.54));          // a price of 2.5e7 times the memory, once
     EXPECT_FALSE(halvingCost(0.85, 1.2));
     EXPECT_TRUE(halvingCost(0.8, 1.2));
     EXPECT_FALSE(halvingCost(0.0, 2.0));
