@@ -180,7 +180,7 @@ Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
     if (texels > properties.limits.maxTexelBufferElements)
         return Error{ErrorCode::missingFeature, std::string(buffer.what()) + " need a buffer of " + std::to_string(texels) +
                                                     " texels; the device allows " +
-                                                    std::to_string(properties.limits.maxTexelBufferElements)};
+                                                    std::to_string(properties.limits.maxTexelBufferElements) + "; bake fewer probes"};
     VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
     info.buffer = buffer.handle();
     info.format = format;
