@@ -10,7 +10,7 @@ layout(scalar, set = 1, binding = 3) uniform SconceFrame { FrameView frame; };
 struct Pixel
 {
     bool surface;  // there is one; false too where the G-buffer's numbers are none
-    vec4 clip;
+    vec4 clip;     // ndc and reversed depth, w 1
     vec3 position; // world, metres
     vec3 normal;   // on the viewer's side
     vec3 view;     // unit, towards the eye
