@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "runtime/field_space.h"
+#include "runtime/host_memory.h"
 #include "runtime/octree_builder.h"
 #include "runtime/probe_baker.h"
 #include "runtime/probe_clearance.h"
@@ -117,6 +118,22 @@ double meanRadiance(const FieldData& field)
     return std::accumulate(sums.begin(), sums.end(), 0.0) / (all * double(field.probes.size()));
 }
 
+/// Refuses what would take more main memory than there is, while nothing is taken.
+Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool emitters, bool deviceIsHost)
+{
+    const gpu::LightFieldInfo& info = field.info;
+    const bool octahedral = info.chart == gpu::kChartOctahedral;
+    const uint64_t distance = info.wordsPerProbe, cube = octahedral ? distanceWordsPerProbe(gpu::kChartCube, info.faceSize / 2) : 0;
+    const uint64_t light = radianceWordsPerProbe(info.chart, info.faceSize); // radiance, surfaces, direct light, emission
+    const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 ? 3 : 2) * light + (emitters ? light : 0);
+    const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
+    if (needed <= allowed) return success();
+    return Error{ErrorCode::outOfMemory, "A bake of " + std::to_string(field.probes.size()) + " probes with maps of " +
+                                             std::to_string(settings.resolution) + " texels takes about " + std::to_string(needed >> 20) +
+                                             " MiB of main memory, and it may have " + std::to_string(allowed >> 20) +
+                                             " MiB; give fewer probes or a lower resolution"};
+}
+
 /// A bake in progress: the field and what the bounces need besides.
 struct Bake
 {
@@ -189,8 +206,9 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     lit.probes = field.probes;
     lit.octree = field.octree;
     lit.irradiance = field.irradiance;
-    lit.distance = field.distance; // tells which probes a wall hides
+    lit.distance = std::move(field.distance); // tells which probes a wall hides; lent, since it is half of the field
     auto device = LightField::create(gpu, lit);
+    field.distance = std::move(lit.distance);
     if (!device) return device.error();
     const std::string stage = "bounce " + std::to_string(number);
     const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
@@ -247,11 +265,14 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();
 
+        const bool emitters = deviceScene->lights().header.emitterCount > 0;
+        const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+        if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
         const size_t texels = probes.size() * radianceWordsPerProbe(info.chart, info.faceSize);
         bake.field.distance.resize(probes.size() * info.wordsPerProbe);
         bake.field.radiance.resize(texels);
         bake.surfaces.resize(texels);
-        if (deviceScene->lights().header.emitterCount > 0) bake.emitted.resize(texels);
+        if (emitters) bake.emitted.resize(texels);
         bake.field.irradiance.resize(probes.size() * kIrradianceWordsPerProbe);
         if (bake.octahedral())
         {

@@ -25,6 +25,7 @@ struct BakeSettings
     bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid; // set when the probes are a uniform one
+    uint64_t hostMemory = 0;       // bytes of main memory that it may take; 0: what is free
 };
 
 /// What a bake cost. Seconds are wall-clock.

@@ -516,6 +516,27 @@ TEST(BakeBudget, TooSmallIsRefusedWithTheNumbers)
     EXPECT_NE(field.error().message.find("24 MiB"), std::string::npos) << field.error().message;
 }
 
+TEST_F(Bake, MoreMainMemoryThanItMayHaveIsRefusedWithTheNumbers)
+{
+    const std::vector<vec3> probes(3, vec3(0.0f));
+    BakeSettings settings = settingsFor(256);
+    settings.hostMemory = uint64_t(1) << 20;
+    const auto field = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    ASSERT_FALSE(field);
+    EXPECT_EQ(field.error().code, ErrorCode::outOfMemory);
+    for (const char* part : {"3 probes", "256 texels", "1 MiB"})
+        EXPECT_NE(field.error().message.find(part), std::string::npos) << field.error().message;
+}
+
+TEST_F(Bake, MoreMainMemoryThanAnyMachineHasIsRefused)
+{
+    const std::vector<vec3> probes(65535, vec3(0.0f)); // about 9 TiB
+    const auto field = bakeLightField(device.host(), litRoom(), probes, settingsFor(2048), {}, cost);
+    ASSERT_FALSE(field);
+    EXPECT_EQ(field.error().code, ErrorCode::outOfMemory);
+    EXPECT_NE(field.error().message.find("65535 probes"), std::string::npos) << field.error().message;
+}
+
 TEST_F(Bake, WithoutShadowMapsOfAreaLightIsRefused)
 {
     const std::vector<vec3> probes = {vec3(0.0f)};
