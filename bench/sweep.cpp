@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <map>
 
+#include "bench/traced_method.h"
+
 namespace sconce
 {
 namespace
@@ -98,7 +100,9 @@ public:
                 bytes += more;
                 group.push_back(pending[at]);
             }
-            if (auto status = runGroup(group); !status) return status;
+            const auto ran = runGroup(group);
+            if (!ran) return ran.error();
+            at -= group.size() - *ran;
         }
         return success();
     }
@@ -125,7 +129,9 @@ private:
         return publisher(measured);
     }
 
-    Status runGroup(const std::vector<size_t>& group)
+    /// @return  how many of the group were measured: fewer than all where the device had no memory for one more beside the others, which
+    ///          then begins the next group
+    Result<size_t> runGroup(std::vector<size_t> group)
     {
         std::vector<std::pair<size_t, SceneBench::Live>> lives;
         const bool yardstickApart = group.front() != 0 && std::ranges::any_of(group, [&](size_t i) { return lacksTimes(i); });
@@ -135,12 +141,18 @@ private:
             if (!yardstick) return yardstick.error();
             lives.emplace_back(0, std::move(*yardstick));
         }
-        for (const size_t i : group)
+        for (size_t k = 0; k < group.size(); ++k)
         {
+            const size_t i = group[k];
             const double weight = 0.5 * weightOf(plan[i], bench.settings());
             auto live = bench.enliven(plan[i], within(weight));
-            done += weight;
             Result<Json> measured = live ? (records[i] ? Result<Json>(*records[i]) : bench.measure(*live, within(0.0))) : live.error();
+            if (!measured && measured.error().code == ErrorCode::outOfMemory && lives.size() > (yardstickApart ? 1 : 0))
+            {
+                group.resize(k);
+                break;
+            }
+            done += weight;
             if (!measured)
             {
                 if (measured.error().code == ErrorCode::cancelled || i == 0) return measured.error();
@@ -151,20 +163,22 @@ private:
                                   {"settings", settingsJson(plan[i].settings)},
                                   {"wrong", "Not measured: " + measured.error().message}};
                 say(plan[i].id + ": not measured: " + measured.error().message);
-                if (auto status = publish(); !status) return status; // not kept: tried again in a later run
+                if (auto status = publish(); !status) return status.error(); // not kept: tried again in a later run
                 continue;
             }
             const bool fresh = !records[i];
             records[i] = std::move(*measured);
             if (fresh)
             {
-                if (auto status = bench.keep(plan[i], *records[i]); !status) return status;
-                if (auto status = publish(); !status) return status;
+                if (auto status = bench.keep(plan[i], *records[i]); !status) return status.error();
+                if (auto status = publish(); !status) return status.error();
                 say(describePoint(*records[i]));
             }
             lives.emplace_back(i, std::move(*live));
         }
-        return bench.settings().times && !lives.empty() ? timeGroup(lives, group) : success();
+        if (bench.settings().times && !lives.empty())
+            if (auto status = timeGroup(lives, group); !status) return status.error();
+        return group.size();
     }
 
     Status timeGroup(std::vector<std::pair<size_t, SceneBench::Live>>& lives, const std::vector<size_t>& group)
@@ -177,9 +191,9 @@ private:
         for (uint32_t turn = 0; turn < turns; ++turn)
         {
             if (!within(weight)("", double(turn) / turns)) return Error{ErrorCode::cancelled, "Interrupted; what was measured is kept."};
-            for (size_t k = 0; k < lives.size(); ++k)
+            // Drawn anew each turn: neither a drifting machine nor what the point before leaves in the caches favours one.
+            for (const uint32_t which : shuffledOrder(lives.size(), settings.seed + turn))
             {
-                const size_t which = (k + turn) % lives.size(); // nobody is always after the same one
                 const PlannedPoint& point = plan[lives[which].first];
                 const bool warm = turn < settings.warmUp;
                 if (point.settings.pathTraced() && (warm || (turn - settings.warmUp) % strideOf(point, settings.frames) != 0)) continue;
