@@ -10,7 +10,7 @@ namespace
 {
 
 // The tracer's own knobs stay at their defaults in every level: fewer ranked probes, hand-offs or a narrower hit rule cost rays and save
-// nothing that could be measured. A bounce costs the bake alone, but the fifth to eighth bring rooms more light than there is (docs/light.md).
+// nothing that could be measured. A bounce costs the bake alone, but eight made two of four scenes worse than four (docs/light.md).
 // Reflections: where rays begin to pay moves with what a frame may cost (docs/light.md). Diffuse rays: with 8 a pixel they are nearer
 // to the truth in every scene measured, with 2 in all but one, whose lamps are small.
 constexpr QualityLevel kLevels[] = {
