@@ -27,7 +27,7 @@ async function open(name, colorScheme = "light") {
         permissions: ["clipboard-read", "clipboard-write"],
     });
     page = await context.newPage();
-    page.setDefaultTimeout(30000); // ms; a busy machine takes long
+    page.setDefaultTimeout(600000); // ms; only to end what hangs: a busy machine takes long
     faults = [];
     const file = `file://${process.env.PAGES}/${name}/report/index.html`;
     page.on("console", (message) => faults.push(`console: ${message.text()}`));

@@ -242,8 +242,7 @@ TEST(Command, PipelineFromSceneToHits)
     EXPECT_EQ(probes.at("probes")[0].at("position").size(), 3u);
 
     const CommandResult bake = sconceCommand(
-        {"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "128", "--bounces", "1", "--json"},
-        120.0);
+        {"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "128", "--bounces", "1", "--json"});
     ASSERT_EQ(bake.exit, 0) << bake.err;
     EXPECT_GT(jsonOf(bake).at("peak_rss_mb").get<double>(), 1.0);
 
@@ -317,7 +316,7 @@ TEST(Command, RenderWritesTheLayersThatWereAskedFor)
     const TestFolder folder;
     ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--grid", "1x1x2", "-q"}).exit, 0);
     const CommandResult bake =
-        sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "64", "-q"}, 120.0);
+        sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "64", "-q"});
     ASSERT_EQ(bake.exit, 0) << bake.err;
     EXPECT_EQ(bake.err, ""); // the validation layer's messages would stand here
     const std::vector<std::string> base = {"render", "cornell", "--field", folder / "f.sconce", "--size", "40x24"};
@@ -390,8 +389,8 @@ TEST(Command, ReferenceAndCompareAgree)
 TEST(Command, InterruptExitsWith130AndWritesNothing)
 {
     const TestFolder folder;
-    const CommandResult result =
-        sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "1920x1080", "--spp", "1000"}, 60.0, 1.0);
+    const CommandResult result = sconceCommand({"reference", "cornell", "-o", folder / "a.exr", "--size", "1920x1080", "--spp", "1000"},
+                                               {.interruptWhen = "reference: "});
     EXPECT_EQ(result.exit, 130) << result.err;
     EXPECT_FALSE(result.timedOut);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));

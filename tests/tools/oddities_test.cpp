@@ -29,7 +29,7 @@ TEST(CommandOnOddities, EveryFileGivesAReportOrASentence)
     {
         for (size_t i = next++; i < files.size(); i = next++)
         {
-            const CommandResult result = sconceCommand({"check", files[i].string(), "--json"}, 30.0);
+            const CommandResult result = sconceCommand({"check", files[i].string(), "--json"}, {.processorSeconds = 30.0});
             const bool report = result.exit == 0 && !nlohmann::json::parse(result.out, nullptr, false).is_discarded();
             const bool sentence =
                 (result.exit == 3 || result.exit == 5) && result.err.find("sconce: ") != std::string::npos && result.err.ends_with(".\n");

@@ -9,15 +9,21 @@ namespace sconce::testing_support
 
 struct CommandResult
 {
-    int exit = -1;  // -1: it did not exit by itself
-    int signal = 0; // that ended it
-    bool timedOut = false;
+    int exit = -1;         // -1: it did not exit by itself
+    int signal = 0;        // that ended it
+    bool timedOut = false; // it computed for longer than it may
     std::string out, err;
 };
 
-/// Runs the `sconce` command of this build under the Vulkan validation layer, whose messages fail the test. @param interruptAfter seconds
-/// until it gets SIGINT; 0: never
-CommandResult sconceCommand(const std::vector<std::string>& arguments, double limitSeconds = 60.0, double interruptAfter = 0.0);
+struct CommandLimits
+{
+    /// Of all its threads together: a busy machine doesn't use it up. What hangs without computing is ended by ctest's limit.
+    double processorSeconds = 600.0;
+    std::string interruptWhen; // it gets SIGINT as soon as its stderr holds this; empty: never
+};
+
+/// Runs the `sconce` command of this build under the Vulkan validation layer, whose messages fail the test.
+CommandResult sconceCommand(const std::vector<std::string>& arguments, const CommandLimits& limits = {});
 
 /// A folder of the test's own, empty at first, removed at the end.
 class TestFolder
