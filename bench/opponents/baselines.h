@@ -40,7 +40,7 @@ uint32_t bestLowFactor(Baseline baseline);
 /// @param lowFactor  8, 16 or 32; 0: bestLowFactor
 Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t lowFactor = 0);
 
-/// Passes with the interfaces of trace_rays.comp and trace_glossy.comp, for RayTracer and IndirectLight.
+/// Passes with the interfaces of trace_rays.comp and trace_glossy.comp, for makeRayTracer() and makeIndirectLight().
 Spirv traceRaysPass(Baseline baseline);
 Spirv traceGlossyPass(Baseline baseline);
 
