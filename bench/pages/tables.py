@@ -11,7 +11,7 @@ A result file holds what was printed, to the digit: `what`, `command`, `commit`,
 keys. A .csv has the same head as lines `# key: value`. A row of findings.json names its own command and commit.
 
 A view names columns (header, template) and rows. `{key}` is the row's value; `{part.key}` that of the row `ROW__part`; `{@}` the row's
-name in the view. A cell whose values are all empty is empty. A third entry `{"bold_up_to": key}` marks cells that reach a target.
+name in the view. A cell whose values are all empty is empty. `"caption": false`: no line below it. A third entry `{"bold_up_to": key}` marks cells that reach a target.
 """
 import argparse
 import csv
@@ -122,7 +122,8 @@ def table_lines(result, view):
 
 
 def group_lines(result, view):
-    """Rows counted by what their first cell begins with, each group with the row that is nearest to its bound."""
+    """Rows counted by what their first cell begins with, each group with the row that is nearest to its bound,
+    one that falls short of what was aimed at before all others."""
     groups = {name: [] for name in view["groups"]}
     for row in result["rows"].values():
         case = next(iter(row.values()))
@@ -139,7 +140,7 @@ def group_lines(result, view):
             bound, worst = leading(row["bound"]), float(row["worst"])
             return worst / bound if bound > 0 else float(worst != 0)
 
-        nearest = max(members, key=share)
+        nearest = max(members, key=lambda row: ("SHORT" in row["bound"], share(row)))
         exact = str(sum(row["worst"] == "0" for row in members))
         shown = [next(iter(nearest.values())), nearest["worst"], nearest["bound"]] if share(nearest) > 0 else ["", "", ""]
         lines.append([name, str(len(members)), exact, *shown])
@@ -151,13 +152,13 @@ def render(results, views, file, name, depth):
     result = results.file(file)
     view = views[file][name]
     header, lines = group_lines(result, view) if "groups" in view else table_lines(result, view)
-    out = ["| " + " | ".join(header) + " |", "|" + "|".join("---" if i == 0 else "---:" for i in range(len(header))) + "|"]
-    if "groups" in view:
-        out[1] = "|---|---:|---:|---|---:|---:|"
+    numbers = [all(re.match(r"[*\-\d]|$", cells[i]) for cells in lines) for i in range(len(header))]
+    out = ["| " + " | ".join(header) + " |", "|" + "|".join("---:" if right else "---" for right in numbers) + "|"]
     out += ["| " + " | ".join(cells) + " |" for cells in lines]
-    stem = file.rpartition(".")[0]
-    commit = f", {result['commit'][:10]}" if "commit" in result else ""
-    out += ["", f"*[{stem}]({depth}bench/results/{file}){commit}*"]
+    if view.get("caption", True):
+        stem = file.rpartition(".")[0]
+        commit = f", {result['commit'][:10]}" if "commit" in result else ""
+        out += ["", f"*[{stem}]({depth}bench/results/{file}){commit}*"]
     return "\n".join(out) + "\n"
 
 
