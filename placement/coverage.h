@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "placement/free_space.h"
 #include "placement/surface_samples.h"
-#include "scene/progress.h"
-#include "scene/result.h"
 
 namespace sconce
 {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 
 namespace sconce
 {
@@ -209,7 +209,7 @@ uint32_t mostEnclosedRegion(const DistanceField& field, const Regions& regions, 
         tbb::parallel_for(size_t(0), kSamples,
                           [&](size_t sample)
                           {
-                              RandomStream random(largest[i], sample);
+                              Random random(largest[i], sample);
                               const uint32_t at = cellsOf[i][random.below(cellsOf[i].size())];
                               const Surroundings seen = lookAround(visibility, field.centre(field.cell(at)));
                               value[sample] = Enclosure{}.keeps(seen) ? seen.all * (1.0f - seen.backs) : 0.0f;
@@ -418,7 +418,7 @@ void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Vi
 
 } // namespace
 
-vec3 FreeSpace::randomPoint(RandomStream& random) const
+vec3 FreeSpace::randomPoint(Random& random) const
 {
     const uint32_t at = cells[random.below(cells.size())];
     // Within the cell, and no farther from its centre than the nearest surface.

@@ -4,16 +4,16 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "placement/distance_field.h"
 #include "placement/visibility.h"
-#include "scene/progress.h"
-#include "scene/result.h"
 #include "scene/scene.h"
 
 namespace sconce
 {
 
-class RandomStream;
+class Random;
 
 /// The space that is lit: where a viewer can be, and hence where probes may be.
 ///
@@ -49,7 +49,7 @@ struct FreeSpace
         return field.inside(cell) ? field.distance[field.index(cell)] : 0.0f;
     }
     /// A point evenly spread over the reachable cells that is on the same side of every surface as its cell's centre.
-    vec3 randomPoint(RandomStream& random) const;
+    vec3 randomPoint(Random& random) const;
 };
 
 inline constexpr float kPassage = 0.25f;       // of the mean distance to surfaces: half the width of the least way from a seed,

@@ -5,7 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "placement/skeleton.h"
 
 namespace sconce
@@ -105,7 +105,7 @@ public:
             if (best[s] == 0) (s < weights.common ? common : rare).push_back(s);
     }
     bool empty() const { return common.empty() && rare.empty(); }
-    uint32_t draw(RandomStream& random) const
+    uint32_t draw(Random& random) const
     {
         const uint64_t ofCommon = uint64_t(common.size()) * weights.commonWeight;
         const uint64_t pick = random.below(ofCommon + uint64_t(rare.size()) * weights.rareWeight);
@@ -165,7 +165,7 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
         {
             if (!report(progress, "refinement", (double(round) + double(k) / double(positions.size())) / double(settings.rounds)))
                 return Error{ErrorCode::cancelled, "The refinement of probes was cancelled."};
-            RandomStream random(settings.seed, round * positions.size() + k);
+            Random random(settings.seed, round * positions.size() + k);
             views.without(k, others);
             const bool comfortable =
                 settings.comfort > 0.0f && legal.visibility.distance(positions[k], settings.comfort) >= settings.comfort;
@@ -223,7 +223,7 @@ Status relocatePositions(const LegalSpace& legal, const ViewTargets& targets, st
             size_t(0), proposals.size(),
             [&](size_t i)
             {
-                RandomStream random(settings.seed, k * proposals.size() + i);
+                Random random(settings.seed, k * proposals.size() + i);
                 proposals[i].gain = 0;
                 for (int draw = 0; draw < 4; ++draw)
                     if (drawBefore(legal, targets.surfels[unseen.draw(random)], settings.clearance, random, proposals[i].position))

@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "placement/free_space.h"
 #include "placement/select.h"
 #include "placement/skeleton.h"
 #include "placement/visibility.h"
-#include "scene/progress.h"
-#include "scene/result.h"
 
 namespace sconce
 {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "base/random.h"
 #include "placement/ball_shrinking.h"
 #include "placement/optimise.h"
-#include "placement/random.h"
 #include "placement/select.h"
 #include "placement/skeleton.h"
 

@@ -4,19 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "base/limits.h"
+#include "base/progress.h"
+#include "base/result.h"
 #include "placement/coverage.h"
 #include "placement/free_space.h"
 #include "placement/optimise.h"
 #include "placement/picture.h"
 #include "placement/probe_set.h"
-#include "scene/progress.h"
-#include "scene/result.h"
 #include "scene/scene.h"
 
 namespace sconce
 {
-
-inline constexpr uint32_t kMostProbes = 65535; // the octree's indices have 16 bits
 
 struct PlaceSettings
 {

@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/limits.h"
+#include "base/numbers.h"
+#include "base/safe_file.h"
+
 namespace sconce
 {
 namespace
@@ -15,7 +19,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMostInFile = 65535; // the octree's indices have 16 bits
 constexpr uintmax_t kMostBytes = uintmax_t(64) << 20;
 
 /// The shortest decimal that reads back as the same float, so that files show 0.1 and not 0.10000000149011612.
@@ -31,11 +34,6 @@ double shortest(float value)
 Json toJson(glm::vec3 value)
 {
     return Json::array({shortest(value.x), shortest(value.y), shortest(value.z)});
-}
-
-bool finite(glm::vec3 value)
-{
-    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
 }
 
 /// Three finite numbers that fit a float.
@@ -69,7 +67,7 @@ std::string readGrid(const Json& json, size_t probes, ProbeGrid& grid)
     for (int axis = 0; axis < 3; ++axis)
     {
         const Json& one = (*count)[size_t(axis)];
-        if (!one.is_number_integer() || one.get<int64_t>() < 1 || one.get<int64_t>() > int64_t(kMostInFile))
+        if (!one.is_number_integer() || one.get<int64_t>() < 1 || one.get<int64_t>() > int64_t(kMostProbes))
             return "\"grid\" needs \"count\" as three whole numbers of at least 1";
         grid.count[axis] = int(one.get<int64_t>());
         product *= grid.count[axis];
@@ -87,7 +85,7 @@ Result<Json> readProbeFile(const std::filesystem::path& file)
     const uintmax_t bytes = std::filesystem::file_size(file, fault);
     std::ifstream in(file, std::ios::binary);
     if (fault || !in) return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read; check the path."};
-    if (bytes > kMostBytes) return badFile(file, fmt::format("it has {} bytes, more than any set of {} probes needs", bytes, kMostInFile));
+    if (bytes > kMostBytes) return badFile(file, fmt::format("it has {} bytes, more than any set of {} probes needs", bytes, kMostProbes));
     std::string text(static_cast<size_t>(bytes), '\0');
     if (!in.read(text.data(), std::streamsize(text.size())))
         return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read whole."};
@@ -95,8 +93,8 @@ Result<Json> readProbeFile(const std::filesystem::path& file)
     Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
     if (json.is_discarded()) return badFile(file, "it is not valid JSON; write it again with sconce place");
     if (!json.is_object() || !json.contains("probes") || !json["probes"].is_array()) return badFile(file, "it has no list \"probes\"");
-    if (json["probes"].size() > kMostInFile)
-        return badFile(file, fmt::format("it has {} probes; at most {} can be indexed", json["probes"].size(), kMostInFile));
+    if (json["probes"].size() > kMostProbes)
+        return badFile(file, fmt::format("it has {} probes; at most {} can be indexed", json["probes"].size(), kMostProbes));
     return json;
 }
 
@@ -138,28 +136,7 @@ Status saveProbes(const ProbeSet& set, const std::filesystem::path& file)
         text += (index ? ",\n    " : "\n    ") + json["probes"][index].dump(-1, ' ', false, Json::error_handler_t::replace);
     text += set.probes.empty() ? "]\n}\n" : "\n  ]\n}\n";
 
-    std::filesystem::path partial = file;
-    partial += ".partial";
-    std::error_code fault;
-    {
-        std::ofstream out(partial, std::ios::binary);
-        out << text;
-        out.close();
-        if (!out)
-        {
-            std::filesystem::remove(partial, fault);
-            return Error{ErrorCode::fileError,
-                         "Probes could not be written to '" + partial.string() + "'; check that the folder exists and has space."};
-        }
-    }
-    std::filesystem::rename(partial, file, fault);
-    if (fault)
-    {
-        const std::string reason = fault.message();
-        std::filesystem::remove(partial, fault);
-        return Error{ErrorCode::fileError, "Probes could not be renamed to '" + file.string() + "': " + reason + "."};
-    }
-    return success();
+    return writeText(file, text);
 }
 
 Result<ProbeSet> loadProbes(const std::filesystem::path& file)

@@ -8,8 +8,8 @@
 
 #include <glm/glm.hpp>
 
+#include "base/result.h"
 #include "scene/probe_grid.h"
-#include "scene/result.h"
 
 namespace sconce
 {

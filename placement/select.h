@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "placement/skeleton.h"
 #include "placement/view_targets.h"
-#include "scene/progress.h"
-#include "scene/result.h"
 
 namespace sconce
 {

@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 
 namespace sconce
 {
@@ -134,7 +134,7 @@ std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, f
         tbb::parallel_for(size_t(0), drawn.size(),
                           [&](size_t i)
                           {
-                              RandomStream random(seed, round * drawn.size() + i);
+                              Random random(seed, round * drawn.size() + i);
                               drawn[i] = legal.space.randomPoint(random);
                               allowed[i] = legal.allows(drawn[i], clearance);
                           });
@@ -144,7 +144,7 @@ std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, f
     return found;
 }
 
-bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, RandomStream& random, vec3& position)
+bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, Random& random, vec3& position)
 {
     vec3 direction = random.direction();
     if (glm::dot(direction, surfel.normal) < 0.0f) direction = -direction;
@@ -168,7 +168,7 @@ std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Su
         tbb::parallel_for(size_t(0), count,
                           [&](size_t i)
                           {
-                              RandomStream random(seed, round * count + i);
+                              Random random(seed, round * count + i);
                               allowed[i] = drawBefore(legal, gaps[random.below(gaps.size())], clearance, random, drawn[i]);
                           });
         for (size_t i = 0; i < count && found.size() < count; ++i)

@@ -51,7 +51,7 @@ std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, f
 
 /// A position before a surface point: out along a random direction of the point's hemisphere, anywhere up to what is hit there. False when
 /// the one drawn is not legal.
-bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, RandomStream& random, vec3& position);
+bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, Random& random, vec3& position);
 
 /// Positions before surface points that others leave unseen.
 std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Surfel> gaps, size_t count, float clearance, uint64_t seed);

@@ -5,7 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 
 namespace sconce
 {
@@ -36,7 +36,7 @@ std::vector<Surfel> raySurfels(const Visibility& visibility, const FreeSpace& sp
     return collect(count, 8,
                    [&](size_t stream, Surfel& surfel) -> bool
                    {
-                       RandomStream random(seed, stream);
+                       Random random(seed, stream);
                        const vec3 origin = space.randomPoint(random);
                        const vec3 direction = random.direction();
                        RayHit hit;
@@ -61,7 +61,7 @@ std::vector<Surfel> areaSurfels(const Scene& scene, const Visibility& visibility
     return collect(count, 24,
                    [&](size_t stream, Surfel& surfel) -> bool
                    {
-                       RandomStream random(seed, stream);
+                       Random random(seed, stream);
                        const double pick = total * double(random.uniform());
                        const size_t triangle = size_t(std::upper_bound(areaUpTo.begin(), areaUpTo.end() - 1, pick) - areaUpTo.begin());
                        const uvec3 corners = scene.triangles[triangle];

@@ -5,6 +5,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/numbers.h"
+
 namespace sconce
 {
 namespace
@@ -30,18 +32,8 @@ std::vector<Surfel> alongMortonCurve(std::vector<Surfel> surfels)
     Bounds bounds;
     for (const Surfel& surfel : surfels) bounds.add(surfel.position);
     const vec3 perCell = 1023.0f / glm::max(bounds.size(), vec3(1e-30f));
-    const auto spread = [](uint32_t bits) // to every third bit
-    {
-        uint32_t out = 0;
-        for (uint32_t bit = 0; bit < 10; ++bit) out |= (bits >> bit & 1u) << (3 * bit);
-        return out;
-    };
     std::vector<std::pair<uint32_t, uint32_t>> order(surfels.size());
-    for (uint32_t s = 0; s < order.size(); ++s)
-    {
-        const uvec3 cell((surfels[s].position - bounds.low) * perCell);
-        order[s] = {spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, s};
-    }
+    for (uint32_t s = 0; s < order.size(); ++s) order[s] = {mortonCode(uvec3((surfels[s].position - bounds.low) * perCell)), s};
     std::sort(order.begin(), order.end());
     std::vector<Surfel> sorted;
     for (const auto& [code, s] : order) sorted.push_back(surfels[s]);

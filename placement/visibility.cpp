@@ -1,272 +1,48 @@
 #include "placement/visibility.h"
-#include "scene/closest_point.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <embree3/rtcore.h>
 
 namespace sconce
 {
-namespace
-{
-
-/// Range of the alpha a material can have: factor times the texels of its base colour image.
-void alphaRange(const Scene& scene, const Material& material, float& low, float& high)
-{
-    low = high = material.baseColor.a;
-    const int index = material.baseColorTexture.image;
-    if (index < 0) return;
-    const Image& image = scene.images[size_t(index)];
-    if (image.rgba.empty()) return;
-    uint8_t least = 255, most = 0;
-    for (size_t texel = 3; texel < image.rgba.size(); texel += 4)
-    {
-        least = std::min(least, image.rgba[texel]);
-        most = std::max(most, image.rgba[texel]);
-    }
-    low *= float(least) / 255.0f;
-    high *= float(most) / 255.0f;
-}
-
-} // namespace
-
-std::vector<Presence> trianglePresence(const Scene& scene)
-{
-    std::vector<Presence> ofMaterial(scene.materials.size(), Presence::solid);
-    for (size_t index = 0; index < scene.materials.size(); ++index)
-    {
-        const Material& material = scene.materials[index];
-        if (material.alphaCutoff <= 0.0f) continue;
-        float low, high;
-        alphaRange(scene, material, low, high);
-        if (high < material.alphaCutoff)
-            ofMaterial[index] = Presence::absent;
-        else if (low < material.alphaCutoff)
-            ofMaterial[index] = Presence::masked;
-    }
-    std::vector<Presence> presence(scene.triangles.size(), Presence::solid);
-    for (size_t triangle = 0; triangle < presence.size(); ++triangle) presence[triangle] = ofMaterial[scene.triangleMaterial[triangle]];
-    return presence;
-}
-
-struct Visibility::State
-{
-    const Scene* scene = nullptr;
-    RTCDevice device = nullptr;
-    RTCScene embree = nullptr;
-    std::vector<Presence> presence;
-    std::vector<uint32_t> triangleOf[2]; // [0] solid, [1] masked: Embree's primitive -> Scene::triangles
-    Bounds bounds;
-    float epsilon = 0.0f;
-
-    ~State()
-    {
-        if (embree) rtcReleaseScene(embree);
-        if (device) rtcReleaseDevice(device);
-    }
-
-    uint32_t triangle(uint32_t geometry, uint32_t primitive) const { return triangleOf[geometry][primitive]; }
-
-    bool attach(uint32_t kind);
-};
-
-namespace
-{
-
-/// Embree asks here about every hit on a masked triangle: texels below the cutoff are not there.
-template <class State> void alphaFilter(const RTCFilterFunctionNArguments* args)
-{
-    const State& state = *static_cast<const State*>(args->geometryUserPtr);
-    const Scene& scene = *state.scene;
-    for (unsigned int lane = 0; lane < args->N; ++lane)
-    {
-        if (args->valid[lane] == 0) continue;
-        const uint32_t triangle = state.triangle(1, RTCHitN_primID(args->hit, args->N, lane));
-        const uvec3 corners = scene.triangles[triangle];
-        const float u = RTCHitN_u(args->hit, args->N, lane);
-        const float v = RTCHitN_v(args->hit, args->N, lane);
-        const vec2 uv = (1.0f - u - v) * scene.uvs[corners.x] + u * scene.uvs[corners.y] + v * scene.uvs[corners.z];
-        const uint32_t material = scene.triangleMaterial[triangle];
-        if (evaluateMaterial(scene, material, uv).baseColor.a < scene.materials[material].alphaCutoff) args->valid[lane] = 0;
-    }
-}
-
-RTCRay embreeRay(vec3 origin, vec3 direction, float from, float to)
-{
-    RTCRay ray{};
-    ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
-    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-    ray.tnear = from, ray.tfar = to, ray.mask = ~0u;
-    return ray;
-}
-
-} // namespace
-
-bool Visibility::State::attach(uint32_t kind)
-{
-    if (triangleOf[kind].empty()) return true; // geometry ids stay fixed: 0 solid, 1 masked
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene->positions.size()));
-    auto* indices = static_cast<uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), triangleOf[kind].size()));
-    if (vertices && indices)
-    {
-        for (const vec3& position : scene->positions)
-            for (int axis = 0; axis < 3; ++axis) *vertices++ = position[axis];
-        for (uint32_t triangle : triangleOf[kind])
-            for (int corner = 0; corner < 3; ++corner) *indices++ = scene->triangles[triangle][corner];
-        if (kind == 1)
-        {
-            rtcSetGeometryUserData(geometry, this);
-            rtcSetGeometryIntersectFilterFunction(geometry, alphaFilter<State>);
-            rtcSetGeometryOccludedFilterFunction(geometry, alphaFilter<State>);
-        }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(embree, geometry, kind);
-    }
-    rtcReleaseGeometry(geometry);
-    return vertices && indices;
-}
-
-Visibility::Visibility(std::unique_ptr<State> owned) : state(std::move(owned)) {}
-Visibility::Visibility(Visibility&&) noexcept = default;
-Visibility& Visibility::operator=(Visibility&&) noexcept = default;
-Visibility::~Visibility() = default;
 
 Result<Visibility> Visibility::build(const Scene& scene)
 {
-    auto state = std::make_unique<State>();
-    state->scene = &scene;
-    state->presence = trianglePresence(scene);
+    Result<TriangleRays> rays = TriangleRays::build(scene);
+    if (!rays) return rays.error();
+    Bounds bounds;
     for (uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle)
-    {
-        if (state->presence[triangle] == Presence::absent) continue;
-        state->triangleOf[state->presence[triangle] == Presence::masked].push_back(triangle);
-        for (int corner = 0; corner < 3; ++corner) state->bounds.add(scene.positions[scene.triangles[triangle][corner]]);
-    }
-    if (state->bounds.empty() || !(state->bounds.diagonal() > 0.0f))
+        if (rays->presence()[triangle] != Presence::absent)
+            for (int corner = 0; corner < 3; ++corner) bounds.add(scene.positions[scene.triangles[triangle][corner]]);
+    if (bounds.empty() || !(bounds.diagonal() > 0.0f))
         return Error{ErrorCode::badInput, "Scene '" + scene.name + "' has " + std::to_string(scene.triangles.size()) +
                                               " triangles and none with a visible surface; probes need something to see."};
-    const vec3 farthest = glm::max(glm::abs(state->bounds.low), glm::abs(state->bounds.high));
-    state->epsilon = 1e-5f * (state->bounds.diagonal() + 0.1f * std::max({farthest.x, farthest.y, farthest.z}));
-
-    state->device = rtcNewDevice(nullptr);
-    if (!state->device)
-        return Error{ErrorCode::deviceFailure, "Embree could not be started; check that the CPU has SSE2 and memory is free."};
-    state->embree = rtcNewScene(state->device);
-    rtcSetSceneFlags(state->embree, RTC_SCENE_FLAG_ROBUST); // without it 16 % of rays at shared edges slip through
-    if (!state->attach(0) || !state->attach(1))
-        return Error{ErrorCode::outOfMemory, "Embree ran out of memory for the " + std::to_string(scene.triangles.size()) +
-                                                 " triangles of scene '" + scene.name + "'; free memory or split the scene."};
-    rtcCommitScene(state->embree);
-    if (const RTCError code = rtcGetDeviceError(state->device); code != RTC_ERROR_NONE)
-        return Error{ErrorCode::outOfMemory, "Embree failed (code " + std::to_string(int(code)) + ") on the " +
-                                                 std::to_string(scene.triangles.size()) + " triangles of scene '" + scene.name +
-                                                 "'; free memory or split the scene."};
-    return Visibility(std::move(state));
+    const vec3 farthest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+    const float epsilon = 1e-5f * (bounds.diagonal() + 0.1f * std::max({farthest.x, farthest.y, farthest.z}));
+    return Visibility(std::move(*rays), bounds, epsilon);
 }
 
 bool Visibility::cast(vec3 origin, vec3 direction, RayHit& hit) const
 {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit query{};
-    query.ray = embreeRay(origin, direction, 0.0f, std::numeric_limits<float>::infinity());
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(state->embree, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit.t = query.ray.tfar;
-    hit.triangle = state->triangle(query.hit.geomID, query.hit.primID);
-    hit.normal = geometricNormal(*state->scene, hit.triangle);
+    const auto met = rays.closest(origin, direction);
+    if (!met) return false;
+    const Scene& scene = rays.scene();
+    hit.t = met->t;
+    hit.triangle = met->triangle;
+    hit.normal = geometricNormal(scene, hit.triangle);
     const bool fromBack = glm::dot(hit.normal, direction) > 0.0f;
     if (fromBack) hit.normal = -hit.normal;
-    hit.back = fromBack && !state->scene->materials[state->scene->triangleMaterial[hit.triangle]].doubleSided;
+    hit.back = fromBack && !scene.materials[scene.triangleMaterial[hit.triangle]].doubleSided;
     return true;
 }
 
 bool Visibility::unoccluded(vec3 from, vec3 to) const
 {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRay ray = embreeRay(from, to - from, 0.0f, 1.0f);
-    rtcOccluded1(state->embree, &context, &ray);
-    return ray.tfar >= 0.0f; // Embree writes -infinity when occluded
-}
-
-void Visibility::unoccluded(vec3 from, std::span<const vec3> to, std::span<uint8_t> seen) const
-{
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    RTCRay8 rays{};
-    alignas(32) int valid[8];
-    size_t target[8];
-    for (size_t next = 0; next < to.size();)
-    {
-        int lanes = 0;
-        for (; next < to.size() && lanes < 8; ++next)
-        {
-            if (!seen[next]) continue;
-            const vec3 direction = to[next] - from;
-            rays.org_x[lanes] = from.x, rays.org_y[lanes] = from.y, rays.org_z[lanes] = from.z;
-            rays.dir_x[lanes] = direction.x, rays.dir_y[lanes] = direction.y, rays.dir_z[lanes] = direction.z;
-            rays.tnear[lanes] = 0.0f, rays.tfar[lanes] = 1.0f, rays.mask[lanes] = ~0u;
-            target[lanes++] = next;
-        }
-        if (lanes == 0) break;
-        for (int lane = 0; lane < 8; ++lane) valid[lane] = lane < lanes ? -1 : 0;
-        rtcOccluded8(valid, state->embree, &context, &rays);
-        for (int lane = 0; lane < lanes; ++lane) seen[target[lane]] = rays.tfar[lane] >= 0.0f;
-    }
+    return !rays.occluded(from, to - from, 1.0f);
 }
 
 bool Visibility::sees(vec3 probe, vec3 surface, vec3 normal) const
 {
-    return unoccluded(probe, surface + state->epsilon * normal);
-}
-
-float Visibility::distance(vec3 point, float farthest) const
-{
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    RTCPointQuery query{};
-    query.x = point.x, query.y = point.y, query.z = point.z;
-    query.radius = farthest;
-    struct Search
-    {
-        const State* state;
-        vec3 point;
-    } search{state.get(), point};
-    const auto shrink = [](RTCPointQueryFunctionArguments* args) -> bool
-    {
-        const Search& asked = *static_cast<const Search*>(args->userPtr);
-        const Scene& scene = *asked.state->scene;
-        const uvec3 corners = scene.triangles[asked.state->triangle(args->geomID, args->primID)];
-        const vec3 nearest =
-            closestPointOnTriangle(asked.point, scene.positions[corners.x], scene.positions[corners.y], scene.positions[corners.z]);
-        const float distance = glm::distance(nearest, asked.point);
-        if (!(distance < args->query->radius)) return false;
-        args->query->radius = distance;
-        return true;
-    };
-    rtcPointQuery(state->embree, &query, &context, shrink, &search);
-    return query.radius;
-}
-
-const Bounds& Visibility::bounds() const
-{
-    return state->bounds;
-}
-const std::vector<Presence>& Visibility::presence() const
-{
-    return state->presence;
-}
-float Visibility::epsilon() const
-{
-    return state->epsilon;
+    return unoccluded(probe, surface + gap * normal);
 }
 
 } // namespace sconce

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/result.h"
+#include "base/result.h"
 #include "scene/scene.h"
 
 namespace sconce

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/result.h"
+#include "base/result.h"
 
 namespace sconce
 {

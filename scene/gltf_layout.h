@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "scene/result.h"
+#include "base/result.h"
 
 namespace sconce
 {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "scene/result.h"
+#include "base/result.h"
 #include "scene/scene.h"
 
 namespace sconce

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "base/numbers.h"
+
 namespace sconce
 {
 
@@ -64,13 +66,6 @@ vec4 sampleTexture(const Scene& scene, const TextureRef& texture, vec2 uv, bool 
     const vec4 top = glm::mix(texel(image, xs[0], ys[0], srgb), texel(image, xs[1], ys[0], srgb), x - x0);
     const vec4 bottom = glm::mix(texel(image, xs[0], ys[1], srgb), texel(image, xs[1], ys[1], srgb), x - x0);
     return glm::mix(top, bottom, y - y0);
-}
-
-template <class Vector> bool finite(const Vector& v)
-{
-    for (int i = 0; i < Vector::length(); ++i)
-        if (!std::isfinite(v[i])) return false;
-    return true;
 }
 
 bool nonNegative(vec3 v)

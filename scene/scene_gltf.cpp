@@ -11,6 +11,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <tiny_gltf.h>
 
+#include "base/numbers.h"
 #include "scene/gltf_guard.h"
 #include "scene/gltf_layout.h"
 #include "scene/image_decode.h"
@@ -33,11 +34,6 @@ Error bad(const std::string& sentence)
 Error cancelled()
 {
     return {ErrorCode::cancelled, "The import was cancelled."};
-}
-
-bool finite(vec3 v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 // Reads any accessor element by element, so that nothing is allocated for what a damaged file merely claims to hold.

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "scene/progress.h"
-#include "scene/result.h"
+#include "base/progress.h"
+#include "base/result.h"
 #include "scene/scene.h"
 
 namespace sconce

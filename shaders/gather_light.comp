@@ -15,7 +15,7 @@ layout(constant_id = 4) const bool kRough = true;   // make the rough reflection
 layout(constant_id = 6) const bool kByPatches = false; // diffuse light from one probe's patches
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
-layout(scalar, set = 1, binding = 6) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/environment_brdf.h
+layout(scalar, set = 1, binding = 6) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/frame/environment_brdf.h
 
 const uint kLookUps = 4u; // dithered look-ups a pixel
 

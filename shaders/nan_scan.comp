@@ -11,7 +11,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Found { uint
 layout(scalar, push_constant) uniform Push
 {
     Words words;
-    Found found; // least place of a bad word, as runtime/nan_scan.cpp set it before
+    Found found; // least place of a bad word, as runtime/vulkan/nan_scan.cpp set it before
     uint count;  // words
     uint before; // words of the same picture in the pieces scanned before
     uint kind;   // kScan...

@@ -2,8 +2,8 @@
 
 #include <atomic>
 
+#include "base/parallel.h"
 #include "svo/octree_plan.h"
-#include "svo/parallel.h"
 
 namespace sconce
 {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "scene/progress.h"
-#include "scene/result.h"
+#include "base/progress.h"
+#include "base/result.h"
 #include "shaders/shared/light_field.h"
 #include "svo/octree.h"
 
@@ -30,13 +30,12 @@ struct ProbeMaps
 /// Which probes see each voxel, ranked, collapsed and packed. A voxel's candidates are judged by what they see of it, by their own maps: 9
 /// points of its free space and up to 16 of the surfaces in it, each from its own side. Each next rank prefers what the earlier ones
 /// don't see; weights fall with distance and outside a probe's influence box. A voxel that no probe sees takes what makes it uniform with
-/// its neighbours. This is the CPU twin of the passes that runtime/octree_builder.h runs, one text (shaders/shared/octree_rank.h): the
-/// same bytes on every device and for any number of threads.
-/// Bounds: the box of what the probes see, without its outermost 1 % a side, so that a ground plane far larger than the place that
-/// matters costs no voxels; a point outside asks the nearest voxel.
-/// Errors: badArgument (no probes, more than 65,535, settings out of range), cancelled. Cost: voxels x min(probes, 256) x 9 to 25 map reads
-/// at most, and 80 bytes of host memory a voxel; a search ends with the fourth probe that sees all of a voxel.
-/// Source: Wang et al. 2019, section 4.1 (influence by visibility, up to four probes a voxel).
+/// its neighbours. This is the CPU twin of the passes that runtime/field/octree_builder.h runs, one text (shaders/shared/octree_rank.h):
+/// the same bytes on every device and for any number of threads. Bounds: the box of what the probes see, without its outermost 1 % a side,
+/// so that a ground plane far larger than the place that matters costs no voxels; a point outside asks the nearest voxel. Errors:
+/// badArgument (no probes, more than 65,535, settings out of range), cancelled. Cost: voxels x min(probes, 256) x 9 to 25 map reads at
+/// most, and 80 bytes of host memory a voxel; a search ends with the fourth probe that sees all of a voxel. Source: Wang et al. 2019,
+/// section 4.1 (influence by visibility, up to four probes a voxel).
 Result<Octree> buildOctree(const ProbeMaps& maps, const OctreeSettings& settings, const Progress& progress = {});
 
 } // namespace sconce

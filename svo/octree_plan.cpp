@@ -8,7 +8,8 @@
 #include <string>
 #include <tuple>
 
-#include "svo/parallel.h"
+#include "base/limits.h"
+#include "base/parallel.h"
 
 namespace sconce
 {
@@ -136,8 +137,9 @@ int voxelsFor(const OctreeSettings& settings, size_t probes)
 std::string argumentFault(const ProbeMaps& maps, const OctreeSettings& settings)
 {
     if (maps.probes.empty()) return "an octree needs at least one probe; place some first";
-    if (maps.probes.size() > 65535)
-        return std::to_string(maps.probes.size()) + " probes are more than the 65535 an octree can index; place fewer";
+    if (maps.probes.size() > kMostProbes)
+        return std::to_string(maps.probes.size()) + " probes are more than the " + std::to_string(kMostProbes) +
+               " an octree can index; place fewer";
     if ((settings.voxels != 0 && settings.voxels < 8) || settings.voxels > 256 || settings.topShift < 1 || settings.topShift > 6)
         return "octree settings: voxels " + std::to_string(settings.voxels) + " must be 0 or 8..256 and topShift " +
                std::to_string(settings.topShift) + " 1..6";
@@ -160,7 +162,7 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
     tree.topShift = settings.topShift;
     tree.topCells = glm::max(ivec3(glm::ceil(size / (tree.voxel * float(1 << tree.topShift)) - 1e-4f)), ivec3(1));
     tree.boundsHigh = tree.boundsLow + tree.voxel * float(1 << tree.topShift) * vec3(tree.topCells);
-    tree.marker = maps.probes.size() <= 255 ? 255 : 65535;
+    tree.marker = maps.probes.size() <= kMostProbesOf8Bits ? kMostProbesOf8Bits : kMostProbes;
 
     gpu::OctreeBuild& build = plan.build;
     build.low = tree.boundsLow;

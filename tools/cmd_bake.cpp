@@ -2,10 +2,10 @@
 #include <iostream>
 
 #include "placement/probe_set.h"
-#include "runtime/bake.h"
-#include "runtime/effect_plan.h"
-#include "runtime/host_vulkan.h"
-#include "runtime/light_field_file.h"
+#include "runtime/bake/bake.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/frame/effect_plan.h"
+#include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
 #include "tools/quality_option.h"

@@ -5,14 +5,15 @@
 #include <iostream>
 #include <map>
 
-#include "bench/analysis.h"
-#include "bench/guard.h"
-#include "bench/point_json.h"
-#include "bench/report_page.h"
-#include "bench/results.h"
-#include "bench/sweep.h"
-#include "runtime/host_vulkan.h"
-#include "runtime/safe_file.h"
+#include "base/safe_file.h"
+#include "bench/report/report_page.h"
+#include "bench/sweep/analysis.h"
+#include "bench/sweep/guard.h"
+#include "bench/sweep/keys.h"
+#include "bench/sweep/point_json.h"
+#include "bench/sweep/results.h"
+#include "bench/sweep/sweep.h"
+#include "runtime/vulkan/host_vulkan.h"
 #include "tools/common.h"
 
 namespace sconce::tools
@@ -54,7 +55,7 @@ struct BenchRun
     const BenchOptions& options;
     const Context& context;
     Gpu& gpu;
-    std::string device;
+    std::string device, build;
     Progress progress;
 };
 
@@ -83,7 +84,7 @@ Result<Json> benchScene(const BenchRun& run, const std::string& source, PlanSett
     desc.scene = std::move(*scene);
     desc.settings = settings;
     desc.folder = folder;
-    desc.version = SCONCE_VERSION;
+    desc.build = run.build;
     auto bench = SceneBench::create(run.gpu, run.device, std::move(desc), points->front().settings, run.progress);
     if (!bench) return bench.error();
     Json described;
@@ -104,7 +105,7 @@ int runSweep(const BenchRun& run)
 {
     const Stopwatch watch;
     const std::filesystem::path folder(run.options.output);
-    Json results = resultsHead(SCONCE_VERSION, run.context.commandLine, run.device);
+    Json results = resultsHead(SCONCE_VERSION, run.build, run.context.commandLine, run.device);
     for (const std::string& source : run.options.scenes)
     {
         results["scenes"].push_back(Json::object());
@@ -241,7 +242,9 @@ int runBench(const BenchOptions& options, const Context& context)
     if (!device) return fail(device.error());
     Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
-    const BenchRun run{options, context, **gpu, device->name(), consoleProgress(context)};
+    const Result<std::string> build = keyOfThisBuild();
+    if (!build) return fail(build.error());
+    const BenchRun run{options, context, **gpu, device->name(), *build, consoleProgress(context)};
     if (!options.check.empty()) return checkGuard(run);
     return options.baseline.empty() ? runSweep(run) : writeGuard(run);
 }

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "runtime/host_vulkan.h"
+#include "runtime/vulkan/host_vulkan.h"
 #include "tools/common.h"
 
 namespace sconce::tools

@@ -1,7 +1,7 @@
 // sconce info and verify: what is in a light field's file.
 #include <iostream>
 
-#include "runtime/light_field_file.h"
+#include "runtime/field/light_field_file.h"
 #include "tools/field_report.h"
 
 namespace sconce::tools

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <iostream>
 
-#include "bench/image_io.h"
+#include "bench/reference/image_io.h"
 #include "placement/place.h"
-#include "runtime/field_data.h"
+#include "runtime/field/field_data.h"
 #include "tools/quality_option.h"
 
 namespace sconce::tools

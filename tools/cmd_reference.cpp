@@ -3,8 +3,8 @@
 #include <iostream>
 #include <map>
 
-#include "bench/metrics.h"
-#include "bench/reference.h"
+#include "bench/reference/metrics.h"
+#include "bench/reference/reference.h"
 #include "tools/pictures.h"
 
 namespace sconce::tools

@@ -4,11 +4,11 @@
 #include <iostream>
 #include <map>
 
-#include "bench/baselines.h"
-#include "runtime/effect_plan.h"
-#include "runtime/host_vulkan.h"
-#include "runtime/light_field_file.h"
-#include "runtime/scene_renderer.h"
+#include "bench/opponents/baselines.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/frame/effect_plan.h"
+#include "runtime/scene/scene_renderer.h"
+#include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
 #include "tools/pictures.h"

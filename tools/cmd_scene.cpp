@@ -1,7 +1,7 @@
 // sconce scenes and check: what can be lit, what is in it, and what it calls for.
 #include <iostream>
 
-#include "runtime/effect_plan.h"
+#include "runtime/frame/effect_plan.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_check.h"
 #include "tools/common.h"

@@ -3,13 +3,13 @@
 #include <iostream>
 #include <span>
 
-#include "bench/baselines.h"
-#include "runtime/host_vulkan.h"
-#include "runtime/light_field.h"
-#include "runtime/light_field_file.h"
-#include "runtime/quality.h"
-#include "runtime/tracer_cpu.h"
-#include "svo/parallel.h"
+#include "base/parallel.h"
+#include "bench/opponents/baselines.h"
+#include "runtime/field/light_field.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/field/quality.h"
+#include "runtime/field/tracer_cpu.h"
+#include "runtime/vulkan/host_vulkan.h"
 #include "tools/field_report.h"
 #include "tools/ray_files.h"
 

@@ -1,8 +1,8 @@
 // sconce tune: settings from the measured front of a bench.
 #include <iostream>
 
-#include "bench/tune.h"
-#include "runtime/safe_file.h"
+#include "base/safe_file.h"
+#include "bench/sweep/tune.h"
 #include "tools/common.h"
 
 namespace sconce::tools

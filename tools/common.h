@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "scene/progress.h"
-#include "scene/result.h"
+#include "base/progress.h"
+#include "base/result.h"
 #include "scene/scene.h"
 
 namespace sconce::tools

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include "bench/baselines.h"
-#include "runtime/light_field_file.h"
+#include "bench/opponents/baselines.h"
+#include "runtime/field/light_field_file.h"
 
 namespace sconce::tools
 {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "runtime/effect_plan.h"
-#include "runtime/field_data.h"
+#include "runtime/field/field_data.h"
+#include "runtime/frame/effect_plan.h"
 #include "tools/common.h"
 
 namespace sconce::tools
@@ -13,8 +13,8 @@ namespace sconce::tools
 Json fieldJson(const FieldData& field);
 void printField(const FieldData& field, const std::string& file);
 
-/// A light field's file as a tracer reads it: "ours", or an opponent's name (bench/baselines.h), whose maps are made from the file's. The
-/// error's sentence says how to bake a field that the tracer can read.
+/// A light field's file as a tracer reads it: "ours", or an opponent's name (bench/opponents/baselines.h), whose maps are made from the
+/// file's. The error's sentence says how to bake a field that the tracer can read.
 Result<FieldData> loadFieldFor(const std::string& file, const std::string& tracer);
 
 /// Tells what the plan gives up of what the scene calls for.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/image_io.h"
+#include "bench/reference/image_io.h"
 #include "tools/common.h"
 
 namespace sconce::tools

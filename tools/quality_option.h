@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "bench/tune.h"
+#include "bench/sweep/tune.h"
 #include "tools/common.h"
 
 namespace sconce::tools

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "runtime/safe_file.h"
+#include "base/safe_file.h"
 
 namespace sconce::tools
 {

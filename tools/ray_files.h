@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/result.h"
+#include "base/result.h"
 #include "shaders/shared/light_field.h"
 
 namespace sconce::tools

@@ -175,10 +175,10 @@ def filled(path, text, results, views, faults):
         try:
             new = render(results, views, file, name, depth)
         except (KeyError, OSError) as error:
-            faults.append((line_of(text, match.start()), f"table {file} {name}: {error}"))
+            faults.append((line_of(figured, match.start()), f"table {file} {name}: {error}"))
             return match[0]
         if new != old:
-            first = line_of(text, match.start(3))
+            first = line_of(figured, match.start(3))
             stands, gives = old.splitlines(), new.splitlines()
             for i in range(max(len(stands), len(gives))):
                 a = stands[i] if i < len(stands) else "(nothing)"
@@ -198,7 +198,8 @@ def filled(path, text, results, views, faults):
             faults.append((line_of(text, match.start()), f"{stem}:{row}.{key}: there stands '{old}', the file gives '{new}'"))
         return f"<!--={stem}:{row}.{key}-->{new}<!--/-->"
 
-    return FIGURE.sub(figure, TABLE.sub(table, text))
+    figured = FIGURE.sub(figure, text) # first: it moves no line
+    return TABLE.sub(table, figured)
 
 
 def blank(match):
@@ -246,35 +247,43 @@ def links(path, text):
     return faults
 
 
-def tree(root):
-    """Every file's path below the root, as text; neither builds nor hidden folders."""
-    files = []
-    pending = [root]
-    while pending:
-        for entry in pending.pop().iterdir():
-            if entry.is_dir() and not entry.is_symlink():
-                skipped = entry.name == "node_modules" or entry.name.startswith(".") or (entry.parent == root and entry.name in SKIPPED_FOLDERS)
-                if not skipped:
+class Tree:
+    """The files and folders that pages and commands may name."""
+
+    def __init__(self, root):
+        self.files = []
+        folders = [root]
+        pending = [root]
+        while pending:
+            for entry in pending.pop().iterdir():
+                skipped = entry.name in ("node_modules", "__pycache__") or entry.name.startswith(".")
+                if skipped or (entry.parent == root and entry.name in SKIPPED_FOLDERS):
+                    continue
+                if entry.is_dir() and not entry.is_symlink():
                     pending.append(entry)
-            else:
-                files.append(entry)
-    return files
+                    folders.append(entry)
+                else:
+                    self.files.append(entry)
+        self.paths = ["/" + file.relative_to(root).as_posix() for file in self.files + folders]
+
+    def has(self, name):
+        """Whether a path ends in it: so a page may name a file without its folder."""
+        return any(path.endswith("/" + name.strip("/")) for path in self.paths)
 
 
-def named_sources(text, files):
-    """Sources that a page names in backticks exist, wherever they stand: a page names a file by the end of its path."""
-    paths = ["/" + file.as_posix() for file in files]
+def named_sources(text, tree):
+    """What a page names in backticks and looks like a source or a folder of the tree is in it."""
     faults = []
-    for match in re.finditer(r"`([\w./-]+\.(?:h|cpp|comp|glsl|frag|vert|sh|py))`", text):
-        if not any(path.endswith("/" + match[1]) for path in paths):
+    for match in re.finditer(r"`([\w./-]+\.(?:h|cpp|comp|glsl|frag|vert|sh|py|ts)|[\w-]+(?:/[\w-]+)*/|(?:bench|tests|shaders)/[\w./-]+)`", text):
+        if not tree.has(match[1]):
             faults.append((line_of(text, match.start()), f"names '{match[1]}', which the tree doesn't have"))
     return faults
 
 
-def version_faults(text, root, files):
+def version_faults(text, tree):
     """formats.md says the version of .sconce that the code writes."""
     written = set()
-    for file in files:
+    for file in tree.files:
         if file.suffix == ".h":
             written |= set(re.findall(r"\bkFieldFileVersion = (\d+)", file.read_text(errors="replace")))
     if len(written) != 1:
@@ -286,7 +295,7 @@ def version_faults(text, root, files):
     return [(line, f"there stands version {page} of .sconce, the code writes {code}") for line, page in said if page != code]
 
 
-def result_faults(folder):
+def result_faults(folder, tree, pages):
     faults = []
     results = Results(folder)
     for path in sorted(folder.iterdir()):
@@ -299,12 +308,17 @@ def result_faults(folder):
         for where, part in parts.items():
             if not part.get("command"):
                 faults.append((path, 1, where + "names no command"))
+            for script in re.findall(r"[\w./-]+\.sh\b", part.get("command", "")):
+                if not tree.has(script):
+                    faults.append((path, 1, where + f"names the command '{script}', which the tree doesn't have"))
             if not re.fullmatch(r"[0-9a-f]{10,40}", part.get("commit", "")):
                 faults.append((path, 1, where + "names no commit of 10 or more hex digits"))
         if not result.get("machine"):
             faults.append((path, 1, "names no machine"))
         if not result["rows"]:
             faults.append((path, 1, "has no rows"))
+        if path.name == "findings.json":
+            faults += [(path, 1, f"row '{key}' is quoted by no page") for key in result["rows"] if f"<!--=findings:{key}." not in pages]
     return faults
 
 
@@ -317,10 +331,11 @@ def main():
     results = Results(root / "bench/results")
     views = json.loads((root / "bench/pages/views.json").read_text())
     documents = sorted((root / "docs").glob("*.md"))
-    files = tree(root)
+    tree = Tree(root)
+    paths = [root / "README.md", *documents]
 
-    complaints = result_faults(root / "bench/results")
-    for path in [root / "README.md", *documents]:
+    complaints = result_faults(root / "bench/results", tree, "".join(path.read_text() for path in paths))
+    for path in paths:
         text = path.read_text()
         differs, others = [], []
         new = filled(path, text, results, views, differs)
@@ -330,9 +345,9 @@ def main():
             text = new
             differs = []
             filled(path, text, results, views, differs) # what can't be written
-        others += bare_numbers(path, text) + links(path, text) + named_sources(text, files)
+        others += bare_numbers(path, text) + links(path, text) + named_sources(text, tree)
         if path.name == "formats.md":
-            others += version_faults(text, root, files)
+            others += version_faults(text, tree)
         complaints += [(path, line, sentence) for line, sentence in differs + others]
     size = sum(path.stat().st_size for path in documents)
     if size > BYTES_OF_DOCS:

@@ -69,7 +69,7 @@ struct LightFieldInfo
 };
 SCONCE_CHECK_SIZE(LightFieldInfo, 192);
 
-/// The knobs of a trace. Defaults and prices: runtime/quality.h.
+/// The knobs of a trace. Defaults and prices: runtime/field/quality.h.
 struct TraceQuality
 {
     int ranked;        // probes of a leaf that are asked, 1..kRanked

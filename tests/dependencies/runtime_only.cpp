@@ -1,8 +1,8 @@
 // The smallest host: it links the runtime alone and touches the file loader and the device, so that both are linked in.
 #include <cstdio>
 
-#include "runtime/host_vulkan.h"
-#include "runtime/light_field_file.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/vulkan/host_vulkan.h"
 
 int main(int argc, char** argv)
 {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -49,7 +49,7 @@ TEST(Coverage, AgreesWithABruteForceRayCasterInAFurnishedRoom)
         { return glm::all(glm::greaterThan(p, low)) && glm::all(glm::lessThan(p, high)); };
         return in({3.0, 0, 0}, {3.2, 2.4, 3.0}) || in({1.0, 0, 1.0}, {1.8, 0.8, 1.9}) || in({4.5, 0, 1.6}, {4.9, 3.0, 2.1});
     };
-    RandomStream random(77, 0);
+    Random random(77, 0);
     const int wanted = 20000;
     int rays = 0, seen = 0;
     while (rays < wanted)

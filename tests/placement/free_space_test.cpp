@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -192,7 +192,7 @@ TEST(FreeSpace, UndersideOfATerrainDoesNotCount)
 TEST(FreeSpace, RandomPointsStayOnTheirSideOfAThinWall)
 {
     const FreeSpace space = spaceOf(dividedRoom(), {{1, 1, 2}}, 5000);
-    RandomStream random(5, 0);
+    Random random(5, 0);
     for (int i = 0; i < 20000; ++i)
     {
         const vec3 p = space.randomPoint(random);

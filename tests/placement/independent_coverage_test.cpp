@@ -11,6 +11,7 @@
 #include "placement/place.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
+#include "tests/support/files.h"
 
 namespace sconce
 {
@@ -185,8 +186,7 @@ TEST(IndependentCoverage, AgreesInTheCornellBox)
 
 TEST(IndependentCoverage, AgreesInSponza)
 {
-    const char* folder = std::getenv("SCONCE_SCENES");
-    const std::filesystem::path file = std::filesystem::path(folder ? folder : SCONCE_SCENES_DEFAULT) / "sponza" / "Sponza.gltf";
+    const std::filesystem::path file = testing_support::scenesFolder() / "sponza" / "Sponza.gltf";
     if (!std::filesystem::exists(file.parent_path())) GTEST_SKIP() << "the scene sponza is not in " << file.parent_path();
     const auto scene = loadGltf(file);
     ASSERT_TRUE(scene) << scene.error().message;

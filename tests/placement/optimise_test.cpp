@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -49,7 +49,7 @@ TEST(SampleCube, LinearFitnessAlongAnAxisDrawsByIt)
         constexpr int kDraws = 20000;
         for (int i = 0; i < kDraws; ++i)
         {
-            RandomStream random(3, uint64_t(i));
+            Random random(3, uint64_t(i));
             std::array<float, 7> uniforms;
             for (float& uniform : uniforms) uniform = random.uniform();
             mean += glm::dvec3(sampleCube(fitness, uniforms)) / double(kDraws);

@@ -10,6 +10,7 @@
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
 #include "tests/placement/box_scenes.h"
+#include "tests/support/files.h"
 
 namespace sconce
 {
@@ -305,8 +306,7 @@ TEST(PlaceProbes, CancellingEndsTheWork)
 // The yardstick: plain greedy cover over 1,500 random free points sees 99.64 % with 54 probes (measured apart from this project).
 TEST(PlaceProbes, SponzaIsSeenBy54Probes)
 {
-    const char* folder = std::getenv("SCONCE_SCENES");
-    const std::filesystem::path file = std::filesystem::path(folder ? folder : SCONCE_SCENES_DEFAULT) / "sponza" / "Sponza.gltf";
+    const std::filesystem::path file = testing_support::scenesFolder() / "sponza" / "Sponza.gltf";
     if (!std::filesystem::exists(file.parent_path())) GTEST_SKIP() << "the scene sponza is not in " << file.parent_path();
     const auto scene = loadGltf(file);
     ASSERT_TRUE(scene) << scene.error().message;

@@ -17,8 +17,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/random.h"
 #include "placement/place.h"
-#include "placement/random.h"
 #include "placement/skeleton.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
@@ -41,7 +41,7 @@ double cpuSeconds()
 bool seenFromAnywhere(const LegalSpace& legal, const Surfel& surfel, uint64_t stream)
 {
     constexpr int kDirections = 300, kDepths = 12;
-    RandomStream random(99, stream);
+    Random random(99, stream);
     const vec3 start = surfel.position + legal.visibility.epsilon() * surfel.normal;
     for (int i = 0; i < kDirections; ++i)
     {

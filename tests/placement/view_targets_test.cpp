@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -25,7 +25,7 @@ struct Room
     std::vector<vec3> probes(size_t count, uint64_t seed) const
     {
         std::vector<vec3> found;
-        RandomStream random(seed, 1);
+        Random random(seed, 1);
         while (found.size() < count) found.push_back(space->randomPoint(random));
         return found;
     }
@@ -46,7 +46,7 @@ struct Room
 // Against the plain sum in 64 bits; the lengths end within a block of the fast sum and within the common surfels.
 TEST(GainOf, IsTheWeightedSumOfWhatARowAdds)
 {
-    RandomStream random(1, 1);
+    Random random(1, 1);
     for (const size_t surfels : {1u, 17u, 4096u, 9001u})
     {
         std::vector<uint8_t> row(surfels), best(surfels);
@@ -74,7 +74,7 @@ TEST(ViewTargets, RatesOnlyWhatExceedsTheFloor)
     const ViewTargets targets(*room.visibility, room.draws, 1.0f);
     const vec3 probe = room.probes(1, 4).front();
     std::vector<uint8_t> all(targets.size()), above(targets.size()), floor(targets.size());
-    RandomStream random(2, 2);
+    Random random(2, 2);
     for (uint8_t& one : floor) one = random.below(2) ? uint8_t(kSeen + random.below(kBetter)) : uint8_t(0);
     targets.rate(*room.visibility, probe, all);
     targets.rate(*room.visibility, probe, above, floor);

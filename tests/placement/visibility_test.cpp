@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -18,7 +18,7 @@ TEST(Visibility, DistanceEqualsBruteForceOverAllTriangles)
     const Scene scene = furnishedRoom();
     const auto visibility = Visibility::build(scene);
     ASSERT_TRUE(visibility) << visibility.error().message;
-    RandomStream random(3, 0);
+    Random random(3, 0);
     for (int i = 0; i < 2000; ++i)
     {
         const vec3 point = vec3(random.uniform(), random.uniform(), random.uniform()) * vec3(8, 5, 6) - 1.0f;

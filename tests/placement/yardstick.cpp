@@ -2,7 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "placement/random.h"
+#include "base/random.h"
 #include "placement/surface_samples.h"
 
 namespace sconce::test
@@ -14,7 +14,7 @@ std::vector<vec3> yardstickProbes(const Visibility& visibility, const FreeSpace&
     std::vector<vec3> points;
     for (uint64_t stream = 0; points.size() < candidates && stream < 100 * candidates; ++stream)
     {
-        RandomStream random(seed, stream);
+        Random random(seed, stream);
         const vec3 point = space.randomPoint(random);
         if (visibility.distance(point, space.field.voxel) >= space.field.voxel) points.push_back(point);
     }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene_gltf.h"
+#include "tests/support/files.h"
 
 namespace sconce
 {
@@ -16,12 +17,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-fs::path scenesFolder()
-{
-    const char* given = std::getenv("SCONCE_SCENES");
-    return given ? given : SCONCE_SCENES_DEFAULT;
-}
 
 // What the importer says it dropped, so that it must add up with what is left.
 uint64_t dropped(const Scene& scene)
@@ -44,7 +39,7 @@ class SceneFiles : public testing::TestWithParam<Known>
 
 TEST_P(SceneFiles, TrianglesAddUp)
 {
-    const fs::path file = scenesFolder() / GetParam().file;
+    const fs::path file = testing_support::scenesFolder() / GetParam().file;
     if (!fs::exists(file.parent_path())) GTEST_SKIP() << "the folder of " << GetParam().file << " is missing; set SCONCE_SCENES";
     const auto scene = loadGltf(file);
     ASSERT_TRUE(scene.ok()) << scene.error().message;
@@ -101,7 +96,7 @@ bool refusalIsExpected(const std::string& sentence)
 
 TEST(SceneOddities, GiveASceneOrASentence)
 {
-    const fs::path folder = scenesFolder() / "gltf_oddities";
+    const fs::path folder = testing_support::scenesFolder() / "gltf_oddities";
     if (!fs::exists(folder)) GTEST_SKIP() << "gltf_oddities is missing; set SCONCE_SCENES";
     // Invalid by the validator, but with geometry that is beyond doubt: the restart index is a vertex that exists, normals are
     // renormalised, an extension is used undeclared, and an animation is broken that isn't read.

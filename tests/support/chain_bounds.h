@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/face_chain_text.h"
+#include "runtime/field/face_chain_text.h"
 
 namespace sconce::testing_support
 {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/gpu.h"
+#include "runtime/vulkan/gpu.h"
 
 namespace sconce::testing_support
 {

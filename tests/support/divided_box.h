@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "runtime/field_space.h"
-#include "runtime/tracer_cpu.h"
+#include "runtime/field/field_space.h"
+#include "runtime/field/tracer_cpu.h"
 
 namespace sconce::testing_support
 {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "runtime/field_space.h"
-#include "runtime/quality.h"
-#include "runtime/tracer_cpu.h"
-#include "svo/parallel.h"
+#include "base/parallel.h"
+#include "runtime/field/field_space.h"
+#include "runtime/field/quality.h"
+#include "runtime/field/tracer_cpu.h"
 
 namespace sconce::testing_support
 {

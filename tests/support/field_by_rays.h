@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "bench/ray_scene.h"
-#include "runtime/field_data.h"
+#include "bench/reference/ray_scene.h"
+#include "runtime/field/field_data.h"
 #include "svo/build_octree.h"
 
 namespace sconce::testing_support

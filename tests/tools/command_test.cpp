@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/run_command.h"
+#include "tests/support/run_command.h"
 
 using namespace sconce::testing_support;
 using nlohmann::json;

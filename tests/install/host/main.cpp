@@ -8,9 +8,9 @@
 #include <vulkan/vulkan.h>
 
 #include "host_trace.h"
-#include "runtime/indirect_light.h"
-#include "runtime/light_field.h"
-#include "runtime/light_field_file.h"
+#include "runtime/field/light_field.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/frame/indirect_light.h"
 #include "scene/builtin_scenes.h"
 
 namespace

@@ -1,0 +1,95 @@
+#include "bench/race/ray_file.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "base/safe_file.h"
+
+namespace sconce
+{
+namespace
+{
+
+static_assert(std::endian::native == std::endian::little, "the file is little endian and written as it lies in memory");
+
+constexpr uint32_t kVersion = 1;
+constexpr float kMissed = -1.0f;
+
+struct Header
+{
+    char magic[4] = {'S', 'C', 'N', 'R'};
+    uint32_t version = kVersion;
+    uint32_t rays = 0;
+    float diagonal = 0.0f;
+    uint32_t unused[4] = {};
+};
+static_assert(sizeof(Header) == 32);
+
+struct Record
+{
+    vec3 origin, direction, normal;
+    float truth; // metres
+};
+static_assert(sizeof(Record) == 40);
+
+Error damaged(const std::filesystem::path& file, const char* what)
+{
+    return {ErrorCode::badInput, "File '" + file.string() + "' " + what + "; record the rays again."};
+}
+
+} // namespace
+
+Status saveRays(const RaySet& set, const std::filesystem::path& file)
+{
+    Header header;
+    header.rays = uint32_t(set.size());
+    header.diagonal = set.diagonal;
+    std::vector<Record> records(set.size());
+    for (size_t i = 0; i < set.size(); ++i)
+        records[i] = {set.origins[i], set.directions[i], set.normals[i], set.truth[i].hit ? set.truth[i].t : kMissed};
+    auto target = SafeFile::create(file);
+    if (!target) return target.error();
+    if (auto status = target->append(std::as_bytes(std::span(&header, 1))); !status) return status;
+    if (auto status = target->append(std::as_bytes(std::span(records))); !status) return status;
+    return target->commit();
+}
+
+Result<RaySet> loadRays(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read."};
+    Header header, expected;
+    if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
+        std::memcmp(header.magic, expected.magic, sizeof header.magic) != 0)
+        return damaged(file, "holds no rays");
+    if (header.version != kVersion) return damaged(file, "has another version");
+    std::error_code problem;
+    const uintmax_t bytes = std::filesystem::file_size(file, problem);
+    if (problem || bytes != sizeof(Header) + uintmax_t(header.rays) * sizeof(Record)) return damaged(file, "is not as long as it says");
+    if (!(header.diagonal > 0.0f && std::isfinite(header.diagonal))) return damaged(file, "has no diagonal");
+    std::vector<Record> records(header.rays);
+    if (!stream.read(reinterpret_cast<char*>(records.data()), std::streamsize(records.size() * sizeof(Record))))
+        return damaged(file, "can't be read to its end");
+    RaySet set;
+    set.diagonal = header.diagonal;
+    for (const Record& record : records)
+    {
+        float numbers[sizeof(Record) / sizeof(float)];
+        std::memcpy(numbers, &record, sizeof record);
+        for (const float number : numbers)
+            if (!std::isfinite(number)) return damaged(file, "has numbers that are not finite");
+        set.origins.push_back(record.origin);
+        set.directions.push_back(record.direction);
+        set.normals.push_back(record.normal);
+        RayTruth truth;
+        truth.hit = record.truth >= 0.0f;
+        truth.t = truth.hit ? record.truth : 0.0f;
+        set.truth.push_back(truth);
+    }
+    set.startCosine.assign(set.size(), 1.0f);
+    return set;
+}
+
+} // namespace sconce

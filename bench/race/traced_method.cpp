@@ -1,0 +1,258 @@
+#include "bench/race/traced_method.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <variant>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "bench/opponents/octahedral_field.h"
+#include "bench/race/distance_format.h"
+#include "runtime/field/face_chain_text.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/field/quality.h"
+#include "runtime/field/tracer_cpu.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+struct Spelled
+{
+    std::string tracer, file; // tracer is empty when the field is to tell
+    std::string knobs;        // of ours, after the slash
+    uint32_t lowFactor = 0;
+};
+
+/// Sets knobs from NAME:VALUE,...; the field's creation checks their ranges.
+Status setKnobs(Tracer& how, const std::string& knobs)
+{
+    gpu::TraceQuality& quality = how.quality.trace;
+    int octahedral = 0;
+    const std::pair<std::string_view, std::variant<int*, float*>> known[] = {
+        {"ranked", &quality.ranked},         {"maxHandoffs", &quality.maxHandoffs},
+        {"startLevel", &quality.startLevel}, {"coarsestLevel", &quality.coarsestLevel},
+        {"tolerance", &quality.tolerance},   {"epsilon", &quality.epsilon},
+        {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds},
+        {"octahedral", &octahedral},         {"distanceBits", &how.distanceBits}};
+    std::istringstream list(knobs);
+    for (std::string knob; std::getline(list, knob, ',');)
+    {
+        const size_t colon = std::min(knob.find(':'), knob.size());
+        const std::string_view name = std::string_view(knob).substr(0, colon);
+        const auto found = std::ranges::find(known, name, [](const auto& entry) { return entry.first; });
+        if (found == std::end(known))
+            return Error{ErrorCode::badArgument, "'" + std::string(name) +
+                                                     "' is no knob of the tracer; give ranked, maxHandoffs, startLevel, "
+                                                     "coarsestLevel, tolerance, epsilon, opinion, farBounds, octahedral or distanceBits"};
+        const char* begin = knob.data() + std::min(colon + 1, knob.size());
+        const char* end = knob.data() + knob.size();
+        const auto read = std::visit([&](auto* value) { return std::from_chars(begin, end, *value); }, found->second);
+        if (begin == end || read.ec != std::errc() || read.ptr != end)
+            return Error{ErrorCode::badArgument, "'" + knob + "' has no number after its colon; write NAME:VALUE"};
+    }
+    how.octahedral = uint32_t(octahedral);
+    return success();
+}
+
+Result<Spelled> parse(const std::string& what)
+{
+    Spelled out{{}, what, {}, 0};
+    const size_t equals = what.find('=');
+    if (equals == std::string::npos) return out;
+    out.tracer = what.substr(0, equals);
+    out.file = what.substr(equals + 1);
+    if (const size_t slash = out.tracer.find('/'); slash != std::string::npos)
+    {
+        const std::string factor = out.tracer.substr(slash + 1);
+        if (out.tracer.compare(0, slash, "ours") == 0)
+        {
+            out.tracer.resize(slash);
+            out.knobs = factor;
+            return out;
+        }
+        const char* end = factor.data() + factor.size();
+        if (std::from_chars(factor.data(), end, out.lowFactor).ptr != end || out.lowFactor == 0)
+            return Error{ErrorCode::badArgument, "'" + factor + "' in '" + what + "' is no low factor; give 8, 16 or 32"};
+        out.tracer.resize(slash);
+    }
+    if (out.tracer != "ours" && !baselineNamed(out.tracer))
+        return Error{ErrorCode::badArgument, "'" + out.tracer + "' in '" + what + "' is not ours, b0, b0plus, b0plus-octree or wang"};
+    return out;
+}
+
+} // namespace
+
+Times timesOf(std::vector<double> milliseconds)
+{
+    assert(!milliseconds.empty());
+    std::ranges::sort(milliseconds);
+    const auto rank = [&](double share) { return milliseconds[size_t(std::ceil(share * double(milliseconds.size()))) - 1]; };
+    return {rank(0.05), rank(0.5), rank(0.95)};
+}
+
+std::vector<TracedRay> tracedRays(std::span<const gpu::RayHit> hits)
+{
+    std::vector<TracedRay> traced;
+    traced.reserve(hits.size());
+    for (const gpu::RayHit& hit : hits)
+        traced.push_back({TraceStatus(hit.status), hit.t, uint32_t(hit.handoffs), uint32_t(hit.distanceReads), uint32_t(hit.indexReads)});
+    return traced;
+}
+
+std::vector<uint32_t> shuffledOrder(size_t count, uint64_t seed)
+{
+    std::vector<uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    Random random(seed, 0, 0);
+    for (size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
+    return order;
+}
+
+Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData field, const Tracer& how, std::string label)
+{
+    if (!how.opponent && field.info.chart != gpu::kChartCube)
+        return Error{ErrorCode::badInput, "Tracer ours needs cube probes, these are octahedral. Bake with --chart cube."};
+    if (how.octahedral != 0 && how.distanceBits != Tracer().distanceBits)
+        return Error{ErrorCode::badArgument, "distanceBits is of the texels of cube faces; leave octahedral out, or distanceBits."};
+    std::unique_ptr<TracedMethod> made(new TracedMethod(gpu));
+    made->label = std::move(label);
+    made->how = how;
+    Result<FieldData> data = std::move(field);
+    if (how.opponent)
+        data = baselineField(std::move(*data), *how.opponent, how.lowFactor);
+    else if (how.octahedral != 0)
+        data = octahedralField(*data, how.octahedral);
+    else
+        data = narrowedField(std::move(*data), how.distanceBits);
+    if (!data) return data.error();
+    made->field = std::move(*data);
+    auto onDevice = LightField::create(gpu, made->field, how.quality);
+    if (!onDevice) return onDevice.error();
+    made->onDevice.emplace(std::move(*onDevice));
+    auto tracer = RayTracer::create(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : Spirv());
+    if (!tracer) return tracer.error();
+    made->tracer.emplace(std::move(*tracer));
+    auto timer = GpuTimer::create(gpu, 1);
+    if (!timer) return timer.error();
+    made->timer.emplace(std::move(*timer));
+    return made;
+}
+
+Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::string& what)
+{
+    auto spelled = parse(what);
+    if (!spelled) return spelled.error();
+    Tracer how;
+    how.lowFactor = spelled->lowFactor;
+    if (auto status = setKnobs(how, spelled->knobs); !status) return status.error();
+    auto data = loadField(spelled->file);
+    if (!data) return data.error();
+    if (!spelled->tracer.empty())
+        how.opponent = baselineNamed(spelled->tracer);
+    else if (data->info.chart == gpu::kChartOctahedral)
+        how.opponent = data->info.gridX != 0 ? Baseline::b0Plus : Baseline::b0PlusOctree;
+    std::string label = how.opponent ? std::string(baselineName(*how.opponent)) : "ours";
+    if (!spelled->knobs.empty()) label.append("/").append(spelled->knobs);
+    if (spelled->lowFactor) label.append("/").append(std::to_string(spelled->lowFactor));
+    auto made = create(gpu, std::move(*data), how, std::move(label));
+    if (!made) return Error{made.error().code, "'" + spelled->file + "': " + made.error().message};
+    (*made)->path = spelled->file;
+    return made;
+}
+
+double TracedMethod::traceMebibytes() const
+{
+    uint32_t words = field.info.wordsPerProbe;
+    if (!how.opponent && how.quality.trace.farBounds == 0) // they are there, and not read
+        words = (how.octahedral != 0 ? 1 : 6) * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
+    const double saved = how.opponent ? 0.0 : double(bytesSaved(field, how.distanceBits)) / double(field.info.probeCount);
+    return (double(words) * sizeof(uint32_t) - saved) / kMebibyte;
+}
+
+FieldBytes TracedMethod::bytes() const
+{
+    FieldBytes bytes = bytesByPart(field);
+    if (!how.opponent) bytes.distance -= bytesSaved(field, how.distanceBits);
+    return bytes;
+}
+
+double TracedMethod::radianceMebibytes() const
+{
+    return double(field.radiance.size()) * sizeof(uint32_t) / double(field.info.probeCount) / kMebibyte;
+}
+
+std::vector<gpu::Ray> TracedMethod::raysOf(const RaySet& set) const
+{
+    const float offset = how.opponent ? baselineOffset(*how.opponent) : 0.0f;
+    std::vector<gpu::Ray> rays(set.size());
+    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + offset * set.normals[i], set.directions[i], set.normals[i]};
+    return rays;
+}
+
+Result<TraceScore> TracedMethod::score(const RaySet& set)
+{
+    std::vector<gpu::RayHit> hits(set.size());
+    if (auto status = trace(raysOf(set), hits); !status) return status.error();
+    return scoreTraces(set, tracedRays(hits));
+}
+
+void TracedMethod::traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) const
+{
+    if (how.opponent)
+    {
+        traceBaselineOnCpu(field, *how.opponent, rays, hits);
+        return;
+    }
+    constexpr size_t kBatch = 1024;
+    parallelFor((rays.size() + kBatch - 1) / kBatch,
+                [&](size_t batch)
+                {
+                    twin::LightFieldTwin<float> text(field, how.quality.trace);
+                    for (size_t i = batch * kBatch; i < std::min(rays.size(), (batch + 1) * kBatch); ++i)
+                        hits[i] = text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
+                });
+}
+
+Status TracedMethod::prepare(std::span<const gpu::Ray> rays, std::span<const uint32_t> order)
+{
+    assert(rays.size() == order.size() && rays.size() <= (size_t(1) << 18));
+    timedRays = uint32_t(rays.size());
+    std::vector<gpu::Ray> shuffled(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) shuffled[i] = rays[order[i]];
+    auto first = gpu.makeBufferWith<gpu::Ray>(rays, 0, "rays");
+    if (!first) return first.error();
+    orderedRays = std::move(*first);
+    auto second = gpu.makeBufferWith<gpu::Ray>(shuffled, 0, "shuffled rays");
+    if (!second) return second.error();
+    shuffledRays = std::move(*second);
+    auto answers = gpu.makeBuffer(rays.size() * sizeof(gpu::RayHit), 0, MemoryUse::device, "ray hits");
+    if (!answers) return answers.error();
+    hitBuffer = std::move(*answers);
+    return success();
+}
+
+Result<double> TracedMethod::time(bool inOrder)
+{
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            timer->begin(cmd, "trace");
+            tracer->record(cmd, inOrder ? orderedRays : shuffledRays, hitBuffer, timedRays);
+            timer->end(cmd);
+        });
+    if (!status) return status.error();
+    const std::vector<GpuTimer::Scope> scopes = timer->read();
+    if (scopes.empty()) return Error{ErrorCode::missingFeature, "this device's queue has no timestamps; times need them"};
+    return scopes.front().milliseconds;
+}
+
+} // namespace sconce

@@ -1,0 +1,168 @@
+#include "bench/reference/metrics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "bench/reference/flip.h"
+
+namespace sconce
+{
+namespace
+{
+
+double relativeSquare(float a, float b)
+{
+    const double d = double(a) - double(b);
+    return d * d / (double(b) * double(b) + 0.01);
+}
+
+uint64_t nonFinitePixels(const Layer& layer)
+{
+    uint64_t count = 0;
+    for (size_t i = 0; i < layer.pixels.size(); i += layer.channels)
+        count += !std::all_of(layer.pixels.begin() + static_cast<ptrdiff_t>(i),
+                              layer.pixels.begin() + static_cast<ptrdiff_t>(i + layer.channels), [](float v) { return std::isfinite(v); });
+    return count;
+}
+
+/// One-channel layers are compared as grey.
+std::vector<float> asRgb(const Layer& layer)
+{
+    if (layer.channels == 3) return layer.pixels;
+    std::vector<float> rgb;
+    rgb.reserve(layer.pixels.size() * 3);
+    for (float v : layer.pixels) rgb.insert(rgb.end(), 3, v);
+    return rgb;
+}
+
+Result<const Layer*> findLayer(const ImageSet& images, const std::string& name, const char* which)
+{
+    if (const Layer* layer = images.find(name)) return layer;
+    std::string names;
+    for (const Layer& layer : images.layers) names += (names.empty() ? "" : ", ") + layer.name;
+    return Error{ErrorCode::badInput, std::string(which) + " has no layer '" + name + "'; it has: " + (names.empty() ? "none" : names)};
+}
+
+} // namespace
+
+double meanSquaredError(std::span<const float> a, std::span<const float> reference)
+{
+    assert(a.size() == reference.size());
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += (double(a[i]) - reference[i]) * (double(a[i]) - reference[i]);
+    return sum / static_cast<double>(a.size());
+}
+
+double relativeMeanSquaredError(std::span<const float> a, std::span<const float> reference)
+{
+    assert(a.size() == reference.size());
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += relativeSquare(a[i], reference[i]);
+    return sum / static_cast<double>(a.size());
+}
+
+double peakSignalToNoise(std::span<const float> a, std::span<const float> reference, float exposure)
+{
+    assert(a.size() == reference.size());
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+    {
+        const double d = double(srgbFromLinear(toneMapAces(exposure * a[i]))) - srgbFromLinear(toneMapAces(exposure * reference[i]));
+        sum += d * d;
+    }
+    if (sum == 0.0) return std::numeric_limits<double>::infinity();
+    return 10.0 * std::log10(static_cast<double>(a.size()) / sum);
+}
+
+Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings)
+{
+    const auto layerA = findLayer(a, settings.layer, "the picture");
+    if (!layerA) return layerA.error();
+    const auto layerB = findLayer(reference, settings.layer, "the reference");
+    if (!layerB) return layerB.error();
+    if (a.width != reference.width || a.height != reference.height || (*layerA)->channels != (*layerB)->channels || a.pixelCount() == 0)
+        return Error{ErrorCode::badInput, "the pictures differ in size: " + std::to_string(a.width) + "x" + std::to_string(a.height) + "x" +
+                                              std::to_string((*layerA)->channels) + " and " + std::to_string(reference.width) + "x" +
+                                              std::to_string(reference.height) + "x" + std::to_string((*layerB)->channels) +
+                                              "; render both with the same --size"};
+    if (!(settings.pixelsPerDegree >= 1.0f && settings.pixelsPerDegree <= 1000.0f))
+        return Error{ErrorCode::badArgument, "pixels per degree is " + std::to_string(settings.pixelsPerDegree) + "; choose 1 to 1000"};
+    if (settings.exposure && !(*settings.exposure > 0.0f && std::isfinite(*settings.exposure)))
+        return Error{ErrorCode::badArgument, "exposure is " + std::to_string(*settings.exposure) + "; choose a positive number"};
+    if (const uint64_t bad = nonFinitePixels(**layerB))
+        return Error{ErrorCode::badInput, "the reference's layer '" + settings.layer + "' has " + std::to_string(bad) +
+                                              " pixels that are not finite; render it again"};
+
+    const std::vector<float> left = asRgb(**layerA), right = asRgb(**layerB);
+    CompareResult result;
+    result.width = a.width;
+    result.height = a.height;
+    result.nonFinitePixels = nonFinitePixels(**layerA);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const bool whole = result.nonFinitePixels == 0;
+    const float exposure = settings.exposure.value_or(autoExposure(right));
+    if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
+    if (settings.relMse) result.relMse = whole ? relativeMeanSquaredError(left, right) : nan;
+    if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, exposure) : nan;
+    if (settings.flip && whole)
+    {
+        result.errorMap = settings.exposure
+                              ? flipLdr(toneMap(left, exposure), toneMap(right, exposure), a.width, a.height, settings.pixelsPerDegree)
+                              : flipHdr(left, right, a.width, a.height, settings.pixelsPerDegree);
+        result.flip = std::accumulate(result.errorMap.begin(), result.errorMap.end(), 0.0) / static_cast<double>(result.errorMap.size());
+        return result;
+    }
+    if (settings.flip) result.flip = nan;
+    result.errorMap.resize(a.pixelCount());
+    for (size_t p = 0; p < result.errorMap.size(); ++p)
+    {
+        double worst = 0.0;
+        for (size_t i = 3 * p; i < 3 * p + 3; ++i)
+            worst = std::max(worst, std::isfinite(left[i]) ? relativeSquare(left[i], right[i]) : 1.0);
+        result.errorMap[p] = static_cast<float>(std::min(1.0, std::sqrt(worst)));
+    }
+    return result;
+}
+
+std::vector<float> errorColours(std::span<const float> errorMap)
+{
+    // Every eighth of magma, sRGB.
+    static constexpr uint8_t kMagma[9][3] = {{0, 0, 4},      {29, 17, 71},   {81, 18, 124},   {131, 38, 129}, {183, 55, 121},
+                                             {229, 89, 100}, {252, 137, 97}, {254, 194, 135}, {252, 253, 191}};
+    std::vector<float> colours(errorMap.size() * 3);
+    for (size_t i = 0; i < errorMap.size(); ++i)
+    {
+        const float x = 8.0f * std::clamp(errorMap[i], 0.0f, 1.0f);
+        const int cell = std::min(7, static_cast<int>(x));
+        for (int c = 0; c < 3; ++c)
+        {
+            const float srgb = std::lerp(float(kMagma[cell][c]), float(kMagma[cell + 1][c]), x - static_cast<float>(cell)) / 255.0f;
+            colours[3 * i + size_t(c)] = srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+        }
+    }
+    return colours;
+}
+
+Status writeErrorMap(const CompareResult& result, const std::filesystem::path& png)
+{
+    return writePng(errorColours(result.errorMap), result.width, result.height, png);
+}
+
+Status writeSideBySide(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings, const CompareResult& result,
+                       const std::filesystem::path& png)
+{
+    const std::vector<float>&left = a.find(settings.layer)->pixels, &right = reference.find(settings.layer)->pixels;
+    const float exposure = settings.exposure.value_or(autoExposure(right));
+    const std::vector<float> panels[] = {toneMap(left, exposure), toneMap(right, exposure), errorColours(result.errorMap)};
+    const size_t row = size_t(3) * result.width;
+    std::vector<float> sheet;
+    sheet.reserve(3 * row * result.height);
+    for (size_t y = 0; y < result.height; ++y)
+        for (const std::vector<float>& panel : panels) sheet.insert(sheet.end(), panel.begin() + y * row, panel.begin() + (y + 1) * row);
+    return writePng(sheet, 3 * result.width, result.height, png);
+}
+
+} // namespace sconce

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "bench/reference/image_io.h"
+
+namespace sconce
+{
+
+/// Mean of (a - b)^2 over all values, linear radiance.
+double meanSquaredError(std::span<const float> a, std::span<const float> reference);
+/// Mean of (a - b)^2 / (b^2 + 0.01), b the reference: errors in the dark count as much as those in the light.
+double relativeMeanSquaredError(std::span<const float> a, std::span<const float> reference);
+/// 10 log10(1 / MSE) of both pictures as shown: exposure, toneMapAces, sRGB; peak 1. +infinity when equal. Decibels.
+double peakSignalToNoise(std::span<const float> a, std::span<const float> reference, float exposure);
+
+struct CompareSettings
+{
+    std::string layer = "beauty";
+    bool mse = true;
+    bool relMse = true;
+    bool psnr = true;
+    bool flip = true;
+    std::optional<float> exposure; // set: PSNR and LDR-FLIP at it. Unset: PSNR at the reference's autoExposure, and HDR-FLIP
+    float pixelsPerDegree = 67.0f; // of FLIP
+};
+
+struct CompareResult
+{
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::optional<double> mse;
+    std::optional<double> relMse;
+    std::optional<double> psnr;   // dB, +infinity when equal
+    std::optional<double> flip;   // mean of the map, [0,1]
+    std::vector<float> errorMap;  // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
+    uint64_t nonFinitePixels = 0; // of the compared picture; any makes the metrics NaN
+};
+
+/// Compares a layer of two pictures of equal size. Errors: badInput names the layer, the sizes, or the reference's non-finite pixels.
+Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings = {});
+
+/// The map in false colours from black over purple to yellow (magma, Smith and van der Walt 2015), as linear RGB for writePng.
+std::vector<float> errorColours(std::span<const float> errorMap);
+Status writeErrorMap(const CompareResult& result, const std::filesystem::path& png);
+/// The compared layer of both, tone-mapped alike, and the error map, beside each other. `settings` and `result`: of compareImages() before.
+Status writeSideBySide(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings, const CompareResult& result,
+                       const std::filesystem::path& png);
+
+} // namespace sconce

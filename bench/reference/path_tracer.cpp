@@ -1,0 +1,218 @@
+#include "bench/reference/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sconce
+{
+namespace
+{
+
+constexpr uint32_t kFirstRoulette = 6; // scatterings before paths may be ended at random
+
+float largest(vec3 v)
+{
+    return std::max({v.x, v.y, v.z});
+}
+bool any(vec3 v)
+{
+    return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f;
+}
+
+/// Veach and Guibas 1995, balance heuristic.
+float balance(float own, float other)
+{
+    return own / (own + other);
+}
+
+/// Share of the samples that go to the specular lobe, by the lobes' reflectance at this angle.
+float specularShare(const BrdfSurface& surface, float nv)
+{
+    const float specular = largest(fresnelSchlick(reflectanceAtNormal(surface), nv));
+    const float diffuse = largest(surface.baseColor) * (1.0f - surface.metallic);
+    if (!(diffuse > 0.0f)) return 1.0f;
+    return std::clamp(specular / (specular + diffuse), 0.1f, 0.9f);
+}
+
+} // namespace
+
+PathTracer::PathTracer(const RayScene& scene_, std::optional<float> roughnessOverride, uint32_t bounceCount)
+    : rays(scene_), scene(scene_.scene()), emitters(scene_.scene()), roughness(roughnessOverride), bounces(bounceCount)
+{
+}
+
+ShadingPoint PathTracer::shade(const SurfaceHit& hit, vec3 view) const
+{
+    const SurfacePoint material = evaluateMaterial(scene, hit.material, hit.uv);
+    ShadingPoint point;
+    point.position = hit.position;
+    const float side = glm::dot(hit.geometricNormal, view) < 0.0f ? -1.0f : 1.0f;
+    point.geometricNormal = side * hit.geometricNormal;
+    point.normal = side * hit.shadingNormal;
+    if (!(glm::dot(point.normal, view) > 0.0f)) point.normal = point.geometricNormal;
+    point.surface = {vec3(material.baseColor), material.metallic, roughness.value_or(material.roughness)};
+    point.emission = material.emission;
+    return point;
+}
+
+BrdfValue PathTracer::reflect(const ShadingPoint& point, vec3 view, vec3 light) const
+{
+    if (!(glm::dot(point.geometricNormal, light) > 0.0f)) return {vec3(0.0f), vec3(0.0f)};
+    BrdfValue value = evaluateBrdf(point.surface, point.normal, view, light);
+    const float cosine = std::max(glm::dot(point.normal, light), 0.0f);
+    value.diffuse *= cosine;
+    value.specular *= cosine;
+    return value;
+}
+
+float PathTracer::scatterPdf(const ShadingPoint& point, vec3 view, vec3 light) const
+{
+    const float share = specularShare(point.surface, glm::dot(point.normal, view));
+    const float diffuse = std::max(glm::dot(point.normal, light), 0.0f) / SCONCE_BRDF_PI;
+    if (isMirror(point.surface.roughness)) return (1.0f - share) * diffuse;
+    return share * visibleNormalPdf(point.normal, view, light, ggxAlpha(point.surface.roughness)) + (1.0f - share) * diffuse;
+}
+
+std::optional<PathTracer::Scatter> PathTracer::scatter(const ShadingPoint& point, vec3 view, Random& random) const
+{
+    const float nv = glm::dot(point.normal, view);
+    if (!(nv > 0.0f)) return std::nullopt;
+    const float share = specularShare(point.surface, nv);
+    const bool specular = random.uniform() < share;
+    const vec2 u = random.uniform2();
+    Scatter sample;
+    if (specular && isMirror(point.surface.roughness))
+    {
+        sample.direction = glm::normalize(2.0f * nv * point.normal - view);
+        if (!(glm::dot(sample.direction, point.geometricNormal) > 0.0f)) return std::nullopt;
+        sample.specular = mirrorReflectance(point.surface, nv) / share;
+        return sample;
+    }
+    const TangentFrame frame = tangentFrame(point.normal);
+    if (specular)
+    {
+        const vec3 micro = toWorld(frame, sampleVisibleNormal(toTangent(frame, view), ggxAlpha(point.surface.roughness), u));
+        sample.direction = glm::normalize(2.0f * glm::dot(view, micro) * micro - view);
+    }
+    else
+        sample.direction = glm::normalize(toWorld(frame, sampleCosine(u)));
+    sample.pdf = scatterPdf(point, view, sample.direction);
+    if (!(sample.pdf > 0.0f)) return std::nullopt;
+    const BrdfValue value = reflect(point, view, sample.direction);
+    sample.diffuse = value.diffuse / sample.pdf;
+    sample.specular = value.specular / sample.pdf;
+    return sample;
+}
+
+vec3 PathTracer::punctual(const ShadingPoint& point, vec3 view, const Light& light) const
+{
+    vec3 toLight = -light.direction;
+    float distance = std::numeric_limits<float>::infinity();
+    float scale = 1.0f;
+    if (light.type != LightType::directional)
+    {
+        toLight = light.position - point.position;
+        distance = glm::length(toLight);
+        if (!(distance > 0.0f)) return vec3(0.0f);
+        toLight /= distance;
+        scale = distanceAttenuation(distance, light.range);
+        if (light.type == LightType::spot) scale *= spotAttenuation(-glm::dot(toLight, light.direction), light.innerCone, light.outerCone);
+    }
+    const BrdfValue value = reflect(point, view, toLight);
+    const vec3 seen = (value.diffuse + value.specular) * light.intensity * scale;
+    if (!any(seen) || rays.occluded(start(point), toLight, std::max(distance - 2.0f * rays.offset(), 0.0f))) return vec3(0.0f);
+    return seen;
+}
+
+BrdfValue PathTracer::emitterLight(const ShadingPoint& point, vec3 view, Random& random) const
+{
+    BrdfValue none{vec3(0.0f), vec3(0.0f)};
+    if (emitters.empty()) return none;
+    const Emitters::Sample sample = emitters.draw(random);
+    const vec3 origin = start(point);
+    vec3 direction = sample.position - origin;
+    const float distance = glm::length(direction);
+    if (!(distance > 2.0f * rays.offset())) return none;
+    direction /= distance;
+    const float cosine = std::abs(glm::dot(geometricNormal(scene, sample.triangle), direction));
+    if (!(cosine > 0.0f)) return none;
+    const float pdf = sample.areaPdf * distance * distance / cosine;
+    BrdfValue value = reflect(point, view, direction);
+    if (!any(value.diffuse) && !any(value.specular)) return none;
+    const vec3 emission = evaluateMaterial(scene, scene.triangleMaterial[sample.triangle], sample.uv).emission;
+    if (!any(emission)) return none;
+    // Seen when the first thing on the way is the drawn triangle itself, so that no epsilon can hide or reveal it.
+    const auto hit = rays.closest(origin, direction);
+    if (!hit || (hit->triangle != sample.triangle && hit->t < distance - 2.0f * rays.offset())) return none;
+    const float weight = balance(pdf, scatterPdf(point, view, direction)) / pdf;
+    value.diffuse *= emission * weight;
+    value.specular *= emission * weight;
+    return value;
+}
+
+PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
+{
+    PathLight light;
+    auto hit = rays.closest(origin, direction);
+    if (!hit)
+    {
+        light.direct = scene.sky;
+        return light;
+    }
+    vec3 view = -direction;
+    ShadingPoint point = shade(*hit, view);
+    light.direct = point.emission;
+    for (const Light& source : scene.lights) light.direct += punctual(point, view, source);
+
+    vec3 diffuse(1.0f), glossy(1.0f); // the path's weight by the lobe that passed it on at the first hit
+    for (uint32_t vertex = 1; vertex <= bounces + 2; ++vertex)
+    {
+        const BrdfValue emitted = emitterLight(point, view, random);
+        const vec3 both = emitted.diffuse + emitted.specular;
+        light.diffuse += diffuse * (vertex == 1 ? emitted.diffuse : both);
+        light.glossy += glossy * (vertex == 1 ? emitted.specular : both);
+        if (vertex > 1 && !scene.lights.empty())
+        {
+            const auto count = static_cast<uint32_t>(scene.lights.size());
+            const vec3 seen = punctual(point, view, scene.lights[random.below(count)]) * static_cast<float>(count);
+            light.diffuse += diffuse * seen;
+            light.glossy += glossy * seen;
+        }
+
+        const auto next = scatter(point, view, random);
+        if (!next) break;
+        diffuse *= vertex == 1 ? next->diffuse : next->diffuse + next->specular;
+        glossy *= vertex == 1 ? next->specular : next->diffuse + next->specular;
+        if (vertex >= kFirstRoulette)
+        {
+            const float keep = std::min(1.0f, std::max(largest(diffuse), largest(glossy)));
+            if (random.uniform() >= keep) break;
+            diffuse /= keep;
+            glossy /= keep;
+        }
+        if (!any(diffuse) && !any(glossy)) break;
+
+        const vec3 from = start(point);
+        hit = rays.closest(from, next->direction);
+        if (!hit)
+        {
+            light.diffuse += diffuse * scene.sky;
+            light.glossy += glossy * scene.sky;
+            break;
+        }
+        view = -next->direction;
+        point = shade(*hit, view);
+        if (any(point.emission))
+        {
+            const float cosine = std::abs(glm::dot(hit->geometricNormal, view));
+            const float areaPdf = emitters.areaPdf(hit->triangle);
+            float weight = 1.0f;
+            if (next->pdf > 0.0f && areaPdf > 0.0f && cosine > 0.0f) weight = balance(next->pdf, areaPdf * hit->t * hit->t / cosine);
+            light.diffuse += diffuse * point.emission * weight;
+            light.glossy += glossy * point.emission * weight;
+        }
+    }
+    return light;
+}
+
+} // namespace sconce

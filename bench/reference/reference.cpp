@@ -1,0 +1,230 @@
+#include "bench/reference/reference.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
+
+#include "base/numbers.h"
+#include "bench/reference/path_tracer.h"
+#include "scene/camera_check.h"
+
+namespace sconce
+{
+namespace
+{
+
+struct Pinhole
+{
+    vec3 eye, forward, right, up; // right and up scaled to the half picture
+
+    Pinhole(const Camera& camera, uint32_t width, uint32_t height) : eye(camera.eye), forward(glm::normalize(camera.forward))
+    {
+        const float half = std::tan(0.5f * camera.verticalFov);
+        right = glm::normalize(glm::cross(forward, camera.up));
+        up = glm::cross(right, forward) * half;
+        right *= half * static_cast<float>(width) / static_cast<float>(height);
+    }
+    vec3 direction(float x, float y, uint32_t width, uint32_t height) const // pixels, from the top left corner
+    {
+        const float u = 2.0f * x / static_cast<float>(width) - 1.0f;
+        const float v = 1.0f - 2.0f * y / static_cast<float>(height);
+        return glm::normalize(forward + u * right + v * up);
+    }
+};
+
+bool allFinite(const PathLight& p)
+{
+    return finite(p.direct) && finite(p.diffuse) && finite(p.glossy);
+}
+
+Status check(const ReferenceSettings& s)
+{
+    const auto bad = [](const std::string& field, const std::string& value, const std::string& range) {
+        return Error{ErrorCode::badArgument, "reference " + field + " is " + value + "; choose " + range};
+    };
+    if (s.width == 0 || s.width > 16384) return bad("width", std::to_string(s.width), "1 to 16384 pixels");
+    if (s.height == 0 || s.height > 16384) return bad("height", std::to_string(s.height), "1 to 16384 pixels");
+    if (s.samples == 0 || s.samples > 1048576) return bad("samples", std::to_string(s.samples), "1 to 1048576 a pixel");
+    if (s.bounces > 64) return bad("bounces", std::to_string(s.bounces), "0 to 64");
+    if (s.roughness && !(*s.roughness >= 0.0f && *s.roughness <= 1.0f)) return bad("roughness", std::to_string(*s.roughness), "0 to 1");
+    if (const std::string fault = cameraFault(s.camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    return success();
+}
+
+/// Counts paths and asks the caller's progress function whether to go on, from within a pixel too: a pixel may take minutes.
+class Pace
+{
+public:
+    static constexpr uint32_t kStep = 64; // paths between two questions: milliseconds
+
+    Pace(const Progress& asked, double allPaths, tbb::task_group_context& group) : progress(asked), paths(allPaths), context(group) {}
+    bool goOn(uint32_t morePaths)
+    {
+        const uint64_t done = traced.fetch_add(morePaths, std::memory_order_relaxed) + morePaths;
+        // One thread at a time asks; the others need not wait for it.
+        if (const std::unique_lock lock(asking, std::try_to_lock);
+            lock && !stopped.load(std::memory_order_relaxed) && !report(progress, "reference", static_cast<double>(done) / paths))
+        {
+            stopped.store(true, std::memory_order_relaxed);
+            context.cancel_group_execution();
+        }
+        return !stopped.load(std::memory_order_relaxed);
+    }
+    bool cancelled() const { return stopped.load(); }
+
+private:
+    const Progress& progress;
+    const double paths;
+    tbb::task_group_context& context;
+    std::mutex asking;
+    std::atomic<uint64_t> traced{0};
+    std::atomic<bool> stopped{false};
+};
+
+struct Frame
+{
+    const ReferenceSettings& settings;
+    const RayScene& rays;
+    const PathTracer& tracer;
+    Pinhole pinhole;
+    ImageSet images;
+    std::vector<glm::dvec3> error; // [pixel] relative squared error of the means of beauty, diffuse, glossy, by halves of the samples
+    std::atomic<uint64_t> nonFinite{0};
+
+    enum : size_t
+    {
+        beauty,
+        direct,
+        diffuse,
+        glossy,
+        depth,
+        normal,
+        albedo,
+        roughness
+    };
+
+    Frame(const ReferenceSettings& s, const RayScene& r, const PathTracer& t)
+        : settings(s), rays(r), tracer(t), pinhole(s.camera, s.width, s.height)
+    {
+        images.width = s.width;
+        images.height = s.height;
+        for (const char* name : {"beauty", "direct", "diffuse_indirect", "glossy_indirect"}) images.add(name, 3);
+        error.resize(images.pixelCount());
+        if (!settings.guides) return;
+        images.add("depth", 1);
+        images.add("normal", 3);
+        images.add("albedo", 3);
+        images.add("roughness", 1);
+    }
+
+    void store(size_t layer, size_t pixel, vec3 value)
+    {
+        for (int i = 0; i < 3; ++i) images.layers[layer].pixels[pixel * 3 + size_t(i)] = value[i];
+    }
+
+    void guides(size_t pixel, vec3 direction)
+    {
+        const auto hit = rays.closest(pinhole.eye, direction);
+        if (!hit) return;
+        const ShadingPoint point = tracer.shade(*hit, -direction);
+        images.layers[depth].pixels[pixel] = glm::dot(hit->position - pinhole.eye, pinhole.forward);
+        images.layers[roughness].pixels[pixel] = point.surface.roughness;
+        store(normal, pixel, point.normal);
+        store(albedo, pixel, point.surface.baseColor);
+    }
+
+    /// False: cancelled, the pixel is unfinished.
+    bool render(uint32_t x, uint32_t y, Pace& pace)
+    {
+        const size_t pixel = size_t(y) * settings.width + x;
+        const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
+        if (settings.guides) guides(pixel, centre);
+        glm::dvec3 sums[3]{}, halves[3][2]{}; // of beauty, diffuse, glossy
+        for (uint32_t i = 0; i < settings.samples; ++i)
+        {
+            if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
+            Random random(settings.seed, pixel, i);
+            const vec2 jitter = random.uniform2();
+            const vec3 ray = settings.pixelCentre ? centre
+                                                  : pinhole.direction(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y,
+                                                                      settings.width, settings.height);
+            const PathLight path = tracer.trace(pinhole.eye, ray, random);
+            if (!allFinite(path))
+            {
+                nonFinite.fetch_add(1, std::memory_order_relaxed);
+                continue;
+            }
+            sums[0] += path.direct;
+            sums[1] += path.diffuse;
+            sums[2] += path.glossy;
+            halves[0][i & 1] += path.direct + path.diffuse + path.glossy;
+            halves[1][i & 1] += path.diffuse;
+            halves[2][i & 1] += path.glossy;
+        }
+        const double count = settings.samples;
+        const vec3 parts[3] = {vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count)};
+        for (size_t i = 0; i < 3; ++i) store(direct + i, pixel, parts[i]);
+        store(beauty, pixel, parts[0] + parts[1] + parts[2]);
+        if (!pace.goOn((settings.samples - 1) % Pace::kStep + 1)) return false; // the paths since the last question
+        if (settings.samples < 2) return true;
+        for (int part = 0; part < 3; ++part)
+        {
+            const glm::dvec3 a = halves[part][0] / double((settings.samples + 1) / 2), b = halves[part][1] / double(settings.samples / 2);
+            const glm::dvec3 mean = 0.5 * (a + b), off = 0.5 * (a - b); // E[off^2] is the variance of the mean
+            error[pixel][part] = glm::dot(off * off / (mean * mean + 0.01), glm::dvec3(1.0 / 3.0));
+        }
+        return true;
+    }
+};
+
+} // namespace
+
+Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress)
+{
+    if (Status fine = check(settings); !fine) return fine.error();
+    if (std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
+    Result<RayScene> rays = RayScene::create(scene);
+    if (!rays) return rays.error();
+    return renderReference(*rays, settings, progress);
+}
+
+Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress)
+{
+    if (Status fine = check(settings); !fine) return fine.error();
+    const PathTracer tracer(rays, settings.roughness, settings.bounces);
+    Frame frame(settings, rays, tracer);
+
+    tbb::task_group_context context;
+    Pace pace(progress, static_cast<double>(frame.images.pixelCount()) * settings.samples, context);
+    constexpr uint32_t kTile = 16;
+    tbb::parallel_for(
+        tbb::blocked_range2d<uint32_t>(0, settings.height, kTile, 0, settings.width, kTile),
+        [&](const tbb::blocked_range2d<uint32_t>& tile)
+        {
+            for (uint32_t y = tile.rows().begin(); y != tile.rows().end(); ++y)
+                for (uint32_t x = tile.cols().begin(); x != tile.cols().end(); ++x)
+                    if (!frame.render(x, y, pace)) return;
+        },
+        context);
+    if (pace.cancelled() || !report(progress, "reference", 1.0))
+        return Error{ErrorCode::cancelled, "the reference picture was cancelled; nothing was kept"};
+
+    Reference result;
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& e : frame.error) sum += e; // in pixel order: the same for any number of threads
+    sum /= static_cast<double>(frame.images.pixelCount());
+    if (settings.samples < 2) sum = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    result.estimatedRelMse = sum[0];
+    result.estimatedRelMseDiffuse = sum[1];
+    result.estimatedRelMseGlossy = sum[2];
+    result.images = std::move(frame.images);
+    result.nonFinitePaths = frame.nonFinite.load();
+    return result;
+}
+
+} // namespace sconce

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "bench/reference/image_io.h"
+#include "bench/reference/ray_scene.h"
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+struct ReferenceSettings
+{
+    uint32_t width = 640;           // pixels, 1..16384
+    uint32_t height = 360;          // pixels, 1..16384
+    uint32_t samples = 64;          // paths a pixel, 1..1048576; noise falls with the square root
+    uint32_t bounces = 2;           // times baked light is re-injected, 0..64: a path scatters at most bounces + 2 times
+    uint64_t seed = 1;              // same seed, same bytes, whatever the number of threads
+    std::optional<float> roughness; // [0,1]; set: the roughness of every surface
+    bool guides = true;             // depth, normal, albedo and roughness, too: one more ray a pixel; false: left out
+    bool pixelCentre = false;       // true: every path starts at the pixel's centre, as a rasteriser's; false: box filter over the pixel
+    Camera camera;
+};
+
+struct Reference
+{
+    /// beauty = direct + diffuse_indirect + glossy_indirect; depth (metres along the view axis, 0: sky), normal (shading, on the
+    /// viewer's side), albedo (base colour), roughness, these four always through the pixel's centre.
+    /// direct: emission seen by the camera, light of the lights without area at the first hit, sky where nothing is hit.
+    /// indirect: all other light that arrives at the first hit, reflected there by the diffuse or the specular lobe.
+    ImageSet images;
+    /// Of the mean against the limit of many samples; NaN with one sample.
+    double estimatedRelMse = 0.0;                                     // of beauty
+    double estimatedRelMseDiffuse = 0.0, estimatedRelMseGlossy = 0.0; // of the indirect terms
+    uint64_t nonFinitePaths = 0;                                      // left out of the picture; anything but 0 is a fault to report
+};
+
+/// Path traces the scene: next-event estimation to lights and emitters, multiple importance sampling with the reflection model of
+/// shaders/shared/brdf.h, threads by TBB. Errors: badArgument (names the field), badInput, outOfMemory, cancelled.
+Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress = {});
+/// The same without building the scene's hierarchy anew; the scene must be a valid one.
+Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress = {});
+
+} // namespace sconce

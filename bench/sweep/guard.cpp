@@ -1,0 +1,99 @@
+#include "bench/sweep/guard.h"
+
+#include <cstdio>
+#include <fstream>
+
+namespace sconce
+{
+namespace
+{
+
+constexpr int kGuardVersion = 1;
+
+struct Margin
+{
+    const char* figure;
+    double relative, absolute; // worse is more than before * (1 + relative) + absolute
+};
+// Counts and bytes are exact, so their margins are for intended small changes. A frame's error holds its noise, which another random
+// number a pixel moves by a few per cent.
+constexpr Margin kMargins[] = {{"reads", 0.03, 0.0},         {"wrong_rays", 0.05, 0.001},  {"unresolved", 0.05, 0.001},
+                               {"bytes", 0.01, 0.0},         {"beauty.relmse", 0.10, 0.0}, {"glossy.relmse", 0.10, 0.0},
+                               {"diffuse.relmse", 0.10, 0.0}};
+
+std::string number(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+} // namespace
+
+Json emptyGuard()
+{
+    Json guard = {{"guard", kGuardVersion}, {"margins", Json::array()}, {"scenes", Json::array()}};
+    for (const Margin& margin : kMargins)
+        guard["margins"].push_back({{"figure", margin.figure}, {"relative", margin.relative}, {"absolute", margin.absolute}});
+    return guard;
+}
+
+Json guardedScene(const std::string& name, const std::string& source, const Json& options, const std::vector<Json>& points)
+{
+    Json scene = {{"name", name}, {"source", source}, {"options", options}, {"points", Json::array()}};
+    for (const Json& point : points)
+    {
+        Json kept = {{"id", point["id"]}};
+        for (const Margin& margin : kMargins)
+            if (const auto figure = figureOf(point, margin.figure)) kept[margin.figure] = *figure;
+        scene["points"].push_back(std::move(kept));
+    }
+    return scene;
+}
+
+Result<Json> readGuard(const std::filesystem::path& file)
+{
+    std::ifstream stream(file);
+    if (!stream)
+        return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read; give a baseline of `sconce bench --baseline`."};
+    Json json = Json::parse(stream, nullptr, false);
+    if (json.is_discarded() || !json.is_object() || json.value("guard", 0) != kGuardVersion || !json.contains("scenes") ||
+        !json.contains("margins"))
+        return Error{ErrorCode::badInput, "File '" + file.string() + "' is no baseline of version " + std::to_string(kGuardVersion) +
+                                              "; write it again with `sconce bench --baseline`."};
+    return json;
+}
+
+std::vector<std::string> worsened(const Json& guard, const Json& scene, const std::vector<Json>& points)
+{
+    std::vector<std::string> sentences;
+    for (const Json& before : scene["points"])
+    {
+        const std::string id = before["id"], where = scene["name"].get<std::string>() + ", " + id + ": ";
+        const Json* now = nullptr;
+        for (const Json& point : points)
+            if (point["id"] == id) now = &point;
+        if (!now)
+        {
+            sentences.push_back(where + "not measured; the baseline has it.");
+            continue;
+        }
+        if (now->contains("wrong") && (*now)["wrong"].is_string()) sentences.push_back(where + (*now)["wrong"].get<std::string>());
+        for (const Json& margin : guard["margins"])
+        {
+            const std::string name = margin["figure"];
+            if (!before.contains(name)) continue;
+            const double was = before[name];
+            const double most = was * (1.0 + margin["relative"].get<double>()) + margin["absolute"].get<double>();
+            const auto is = figureOf(*now, name);
+            if (!is)
+                sentences.push_back(where + name + " was not measured; the baseline has " + number(was) + ".");
+            else if (!(*is <= most))
+                sentences.push_back(where + name + " is " + number(*is) + ", worse than the baseline's " + number(was) +
+                                    " by more than its margin (at most " + number(most) + ").");
+        }
+    }
+    return sentences;
+}
+
+} // namespace sconce

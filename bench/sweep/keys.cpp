@@ -1,0 +1,104 @@
+#include "bench/sweep/keys.h"
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include <xxhash.h>
+
+namespace sconce
+{
+namespace
+{
+
+std::string hex(uint64_t value)
+{
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+class Hash
+{
+public:
+    Hash() { XXH3_64bits_reset(state.get()); }
+    template <class T> void add(const T& value)
+    {
+        static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
+        XXH3_64bits_update(state.get(), &value, sizeof value);
+    }
+    template <int N> void add(const glm::vec<N, float, glm::defaultp>& value)
+    {
+        for (int i = 0; i < N; ++i) add(value[i]);
+    }
+    void add(std::span<const char> bytes) { XXH3_64bits_update(state.get(), bytes.data(), bytes.size()); }
+    template <class T> void addAll(const std::vector<T>& values) // without padding
+    {
+        add(values.size());
+        XXH3_64bits_update(state.get(), values.data(), values.size() * sizeof(T));
+    }
+    void add(const TextureRef& texture)
+    {
+        add(texture.image), add(texture.wrapU), add(texture.wrapV), add(texture.uvOffset);
+        for (int i = 0; i < 2; ++i) add(texture.uvScaleRotate[i]);
+    }
+    uint64_t value() const { return XXH3_64bits_digest(state.get()); }
+
+private:
+    struct Free
+    {
+        void operator()(XXH3_state_t* s) const { XXH3_freeState(s); }
+    };
+    std::unique_ptr<XXH3_state_t, Free> state{XXH3_createState()};
+};
+
+} // namespace
+
+std::string keyOf(const nlohmann::ordered_json& json)
+{
+    const std::string text = json.dump();
+    return hex(XXH3_64bits(text.data(), text.size()));
+}
+
+Result<std::string> keyOfFile(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    Hash hash;
+    std::vector<char> piece(size_t(1) << 20);
+    while (stream)
+    {
+        stream.read(piece.data(), std::streamsize(piece.size()));
+        hash.add(std::span<const char>(piece).first(size_t(stream.gcount())));
+    }
+    if (!stream.eof()) return Error{ErrorCode::fileError, "Cannot read '" + file.string() + "'; check that it is there and may be read."};
+    return hex(hash.value());
+}
+
+Result<std::string> keyOfThisBuild()
+{
+    return keyOfFile("/proc/self/exe");
+}
+
+std::string keyOf(const Scene& scene)
+{
+    Hash hash;
+    hash.addAll(scene.positions), hash.addAll(scene.normals), hash.addAll(scene.uvs);
+    hash.addAll(scene.triangles), hash.addAll(scene.triangleMaterial);
+    for (const Material& m : scene.materials)
+    {
+        hash.add(m.baseColor), hash.add(m.baseColorTexture), hash.add(m.metallic), hash.add(m.roughness);
+        hash.add(m.metallicRoughnessTexture), hash.add(m.emission), hash.add(m.emissionTexture), hash.add(m.alphaCutoff);
+    }
+    for (const Image& image : scene.images) hash.add(image.width), hash.add(image.height), hash.addAll(image.rgba);
+    for (const Light& light : scene.lights)
+    {
+        hash.add(light.type), hash.add(light.position), hash.add(light.direction), hash.add(light.intensity);
+        hash.add(light.range), hash.add(light.innerCone), hash.add(light.outerCone);
+    }
+    hash.add(scene.sky);
+    return hex(hash.value());
+}
+
+} // namespace sconce

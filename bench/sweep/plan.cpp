@@ -1,0 +1,129 @@
+#include "bench/sweep/plan.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "bench/sweep/tune.h"
+
+namespace sconce
+{
+namespace
+{
+
+const std::string kLevelKnob = "level"; // the named quality levels
+
+struct Opponent
+{
+    const char* name;
+    const char* placement;
+    uint32_t faces;            // 0: maps as ours; 1: octahedral maps of as much memory; 2: cube faces of as many texels a side as those
+    std::vector<double> curve; // further resolutions, times the default's
+};
+
+const std::vector<Opponent>& opponents()
+{
+    static const std::vector<Opponent> all{{"ours-grid", "grid", 0, {}},
+                                           {"b0", "grid", 1, {0.5, 2.0}},
+                                           {"b0plus", "grid", 1, {0.5, 2.0}},
+                                           {"b0plus-octree", "optimised", 1, {0.5, 2.0}},
+                                           {"wang", "optimised", 2, {0.5}}};
+    return all;
+}
+
+class Planner
+{
+public:
+    explicit Planner(const PlanSettings& planSettings) : plan(planSettings) {}
+
+    void addDefault(const PointSettings& settings)
+    {
+        if (wants(settings)) points.push_back({settings.method + "/default", "default", "", settings});
+    }
+
+    /// Nothing where the value is the default's.
+    void addVaried(const PointSettings& base, const Knob& knob, const std::string& value)
+    {
+        if (!wants(base)) return;
+        if (!plan.knobs.empty() && std::ranges::find(plan.knobs, knob.name) == plan.knobs.end()) return;
+        PlannedPoint point{base.method + "/" + std::string(knob.name) + "=" + value, std::string(knob.name), value, base};
+        knob.set(point.settings, value);
+        if (knob.get(point.settings) == knob.get(base)) return;
+        const auto same = [&](const PlannedPoint& other) { return other.id == point.id; };
+        if (std::ranges::none_of(points, same)) points.push_back(std::move(point));
+    }
+
+    void addLevel(const PointSettings& base, const QualityLevel& level)
+    {
+        if (!wants(base) || (!plan.knobs.empty() && std::ranges::find(plan.knobs, kLevelKnob) == plan.knobs.end())) return;
+        const std::string value(level.name);
+        points.push_back({base.method + "/" + kLevelKnob + "=" + value, kLevelKnob, value, base});
+        applyLevel(points.back().settings, level);
+    }
+
+    void addProbeCounts(const PointSettings& base, std::initializer_list<double> factors)
+    {
+        for (const double factor : factors)
+            addVaried(base, *findKnob("probes"), std::to_string(std::max(1u, uint32_t(base.probes * factor))));
+    }
+
+    std::vector<PlannedPoint> points;
+
+private:
+    bool wants(const PointSettings& settings) const
+    {
+        return plan.methods.empty() || std::ranges::find(plan.methods, settings.method) != plan.methods.end();
+    }
+
+    const PlanSettings& plan;
+};
+
+} // namespace
+
+Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
+{
+    for (const std::string& name : settings.knobs)
+        if (!findKnob(name) && name != kLevelKnob)
+        {
+            std::string known;
+            for (const Knob& knob : knobs()) known += std::string(knob.name) + ", ";
+            return Error{ErrorCode::badArgument, "There is no knob '" + name + "'; there are: " + known + kLevelKnob + "."};
+        }
+    Planner planner(settings);
+    PointSettings ours = settings.ours;
+    ours.method = "ours";
+    ours.probes = settings.probes;
+    ours.frame.roughness = settings.roughness;
+    planner.addDefault(ours);
+    std::vector<PointSettings> theirs;
+    for (const Opponent& opponent : opponents())
+    {
+        PointSettings point = ours;
+        point.method = opponent.name;
+        point.placement = opponent.placement;
+        if (opponent.faces != 0) point.resolution = opponent.faces * std::bit_ceil(ours.resolution);
+        theirs.push_back(point);
+        planner.addDefault(point);
+    }
+    PointSettings paths = ours;
+    paths.method = kPathTracer;
+    planner.addDefault(paths);
+    for (const std::string_view value : findKnob("paths")->sweep) planner.addVaried(paths, *findKnob("paths"), std::string(value));
+    if (settings.methodsOnly) return std::move(planner.points);
+
+    planner.addProbeCounts(ours, {0.25, 0.5, 2.0});
+    for (const Knob& knob : knobs())
+        if (std::ranges::find(knob.methods, ours.method) != knob.methods.end())
+            for (const std::string_view value : knob.sweep) planner.addVaried(ours, knob, std::string(value));
+    for (const QualityLevel& level : qualityLevels()) planner.addLevel(ours, level);
+    for (size_t i = 0; i < theirs.size(); ++i)
+    {
+        planner.addProbeCounts(theirs[i], {0.5, 2.0});
+        for (const double factor : opponents()[i].curve)
+            planner.addVaried(theirs[i], *findKnob("resolution"), std::to_string(uint32_t(theirs[i].resolution * factor)));
+        planner.addVaried(theirs[i], *findKnob("rays"), "4");
+        planner.addVaried(theirs[i], *findKnob("trace every"), "4"); // any tracer gains by it
+    }
+    return std::move(planner.points);
+}
+
+} // namespace sconce

@@ -1,0 +1,94 @@
+#include "bench/sweep/point_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace sconce
+{
+namespace
+{
+
+constexpr double kWrongRays = 0.5; // right within 1 %: fewer are no answer
+constexpr size_t kMostSegments = 20000;
+
+double meanSquare(std::span<const float> values)
+{
+    double sum = 0.0;
+    for (const float value : values) sum += double(value) * value;
+    return sum / double(values.size());
+}
+
+} // namespace
+
+Json toJson(vec3 v)
+{
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json numberOrNull(double value)
+{
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json bytesJson(const FieldBytes& bytes)
+{
+    return {{"total", bytes.total()},     {"distance", bytes.distance},     {"normals", bytes.normals},
+            {"radiance", bytes.radiance}, {"irradiance", bytes.irradiance}, {"index", bytes.index}};
+}
+
+Json raysJson(const TraceScore& score)
+{
+    return {{"count", score.rays},
+            {"right_1", score.right1},
+            {"right_02", score.right02},
+            {"false", score.falseHit},
+            {"leak", score.leak},
+            {"unresolved", score.unresolved},
+            {"reads_mean", score.distanceReads.mean},
+            {"reads_p95", score.distanceReads.p95},
+            {"reads_max", score.distanceReads.max},
+            {"index_reads_mean", score.indexReads.mean},
+            {"handoffs_mean", score.handoffs.mean}};
+}
+
+Json wrongness(const Json& point, std::span<const float> reference)
+{
+    const double black = meanSquare(reference);
+    const Json& error = point["error"]["beauty"]["mse"];
+    if (error.is_null()) return "The picture has pixels that are not finite.";
+    if (error.get<double>() >= black)
+        return "The picture is wrong beyond use: its MSE is " + error.dump() + ", that of a black one " + Json(black).dump() + ".";
+    if (point.contains("rays") && point["rays"]["right_1"].get<double>() < kWrongRays)
+        return "More than half of the rays are answered wrongly: " + point["rays"]["right_1"].dump() + " are right.";
+    return nullptr;
+}
+
+Json sectionAt(const Scene& scene, float height)
+{
+    std::vector<glm::vec4> segments;
+    for (const uvec3& triangle : scene.triangles)
+    {
+        vec2 ends[2];
+        int found = 0;
+        for (int i = 0; i < 3 && found < 2; ++i)
+        {
+            const vec3 a = scene.positions[triangle[i]], b = scene.positions[triangle[(i + 1) % 3]];
+            if ((a.y < height) == (b.y < height)) continue;
+            const float s = (height - a.y) / (b.y - a.y);
+            ends[found++] = vec2(glm::mix(a.x, b.x, s), glm::mix(a.z, b.z, s));
+        }
+        if (found == 2) segments.emplace_back(ends[0], ends[1]);
+    }
+    const auto length = [](const glm::vec4& s) { return glm::distance(vec2(s), vec2(s.z, s.w)); };
+    if (segments.size() > kMostSegments)
+    {
+        std::ranges::nth_element(segments, segments.begin() + kMostSegments, std::greater<>(), length);
+        segments.resize(kMostSegments);
+    }
+    Json json = Json::array();
+    for (const glm::vec4& s : segments) json.push_back({s.x, s.y, s.z, s.w});
+    return json;
+}
+
+} // namespace sconce

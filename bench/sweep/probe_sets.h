@@ -1,0 +1,28 @@
+#pragma once
+
+#include "bench/sweep/settings.h"
+#include "placement/place.h"
+
+namespace sconce
+{
+
+/// Where a point's probes go, with what placing them cost.
+struct BenchProbes
+{
+    std::string name; // optimised-54, grid-64 (powers of two: grid2-64)
+    ProbeSet set;
+    Json report; // method, seconds, coverage
+};
+
+/// The probes that these settings ask for: by our placement, without its refinement (skeleton), from ball shrinking, or on a uniform grid
+/// in the reachable space; b0's grid has counts that are powers of two, the nearest to what was asked.
+/// Errors: as placeProbes(); badArgument names the placement.
+Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress);
+
+/// The name alone, as results call the set.
+std::string probeSetName(const PointSettings& settings);
+
+/// The power-of-two counts whose product is nearest to `count` (in ratio), and of those the ones whose cells are most nearly cubes.
+glm::ivec3 powerOfTwoShape(const Bounds& bounds, uint32_t count);
+
+} // namespace sconce

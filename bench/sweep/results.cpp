@@ -1,0 +1,155 @@
+#include "bench/sweep/results.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include <unistd.h>
+
+#include "base/safe_file.h"
+#include "runtime/vulkan/host_vulkan.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr int kSchema = 2;
+
+constexpr const char* kColumns[] = {"frame_ms",    "trace_ms",       "reads",        "wrong_rays", "unresolved",    "bytes",
+                                    "probes",      "bake_s",         "place_s",      "beauty.mse", "beauty.relmse", "beauty.flip",
+                                    "diffuse.mse", "diffuse.relmse", "diffuse.flip", "glossy.mse", "glossy.relmse", "glossy.flip"};
+
+std::string firstAfter(const char* file, std::string_view key, char separator)
+{
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);)
+        if (line.starts_with(key))
+            if (const size_t at = line.find(separator); at != std::string::npos)
+            {
+                std::string value = line.substr(at + 1);
+                std::erase(value, '"');
+                return value.substr(std::min(value.find_first_not_of(" \t"), value.size()));
+            }
+    return "";
+}
+
+std::string utcNow()
+{
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm parts = {};
+    gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
+}
+
+std::optional<double> numberAt(const Json& json, std::initializer_list<std::string_view> path)
+{
+    const Json* at = &json;
+    for (const std::string_view key : path)
+    {
+        if (!at->is_object()) return {};
+        const auto found = at->find(key);
+        if (found == at->end()) return {};
+        at = &*found;
+    }
+    if (!at->is_number()) return {};
+    return at->get<double>();
+}
+
+std::string quoted(const std::string& text)
+{
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text)
+    {
+        if (c == '"') out += '"';
+        out += c;
+    }
+    out += '"';
+    return out;
+}
+
+} // namespace
+
+Json resultsHead(const std::string& version, const std::string& build, const std::string& command, const std::string& deviceName)
+{
+    const double memoryMb = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE)) / 1e6;
+    Json head = {{"schema", kSchema},     {"version", version},  {"build", build},
+                 {"commands", {command}}, {"started", utcNow()}, {"seconds", 0.0}};
+    head["machine"] = {{"cpu", firstAfter("/proc/cpuinfo", "model name", ':')},
+                       {"cores", std::thread::hardware_concurrency()},
+                       {"memory_mb", std::round(memoryMb)},
+                       {"os", firstAfter("/etc/os-release", "PRETTY_NAME", '=')}};
+    head["device"] = {{"name", deviceName}};
+    if (const auto devices = deviceSummary())
+        for (const DeviceSummary& each : *devices)
+            if (each.name == deviceName)
+                head["device"].update(Json{{"kind", each.kind}, {"driver", each.driver}, {"api", each.apiVersion}});
+    head["scenes"] = Json::array();
+    return head;
+}
+
+std::optional<double> figureOf(const Json& point, std::string_view name)
+{
+    if (name == "frame_ms" || name == "trace_ms") return numberAt(point, {name, "median"});
+    if (name == "reads") return numberAt(point, {"rays", "reads_mean"});
+    if (name == "unresolved") return numberAt(point, {"rays", "unresolved"});
+    if (name == "bytes") return numberAt(point, {"bytes", "total"});
+    if (name == "wrong_rays")
+    {
+        const auto right = numberAt(point, {"rays", "right_1"});
+        return right ? std::optional(1.0 - *right) : std::nullopt;
+    }
+    if (const size_t dot = name.find('.'); dot != std::string_view::npos)
+        return numberAt(point, {"error", name.substr(0, dot), name.substr(dot + 1)});
+    return numberAt(point, {name});
+}
+
+std::string resultsCsv(const Json& results)
+{
+    std::ostringstream csv;
+    csv << "scene,id,method,knob,value";
+    for (const char* column : kColumns) csv << "," << column;
+    csv << ",wrong\n";
+    csv.precision(9);
+    for (const Json& scene : results["scenes"])
+        for (const Json& point : scene["points"])
+        {
+            csv << quoted(scene["name"]);
+            for (const char* key : {"id", "method", "knob", "value"}) csv << "," << quoted(point[key]);
+            for (const char* column : kColumns)
+            {
+                csv << ",";
+                if (const auto figure = figureOf(point, column)) csv << *figure;
+            }
+            csv << "," << (point.contains("wrong") && point["wrong"].is_string() ? quoted(point["wrong"]) : "") << "\n";
+        }
+    return csv.str();
+}
+
+Status writeResults(const Json& results, const std::filesystem::path& folder)
+{
+    const std::string text = results.dump(1, ' ', false, Json::error_handler_t::replace);
+    if (auto status = writeText(folder / "results.json", text + "\n"); !status) return status;
+    return writeText(folder / "results.csv", resultsCsv(results));
+}
+
+Result<Json> readResults(const std::filesystem::path& file)
+{
+    std::ifstream stream(file);
+    if (!stream) return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read; give the results.json of a bench."};
+    Json json = Json::parse(stream, nullptr, false);
+    if (json.is_discarded() || !json.is_object() || json.value("schema", 0) != kSchema || !json.contains("scenes"))
+        return Error{ErrorCode::badInput, "File '" + file.string() + "' is no results.json of schema " + std::to_string(kSchema) +
+                                              "; run `sconce bench` again."};
+    return json;
+}
+
+} // namespace sconce

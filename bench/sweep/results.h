@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "base/result.h"
+#include "bench/sweep/settings.h"
+
+namespace sconce
+{
+
+/// results.json (docs/results.md) without its scenes: version, command, machine, device.
+Json resultsHead(const std::string& version, const std::string& build, const std::string& command, const std::string& deviceName);
+
+/// Writes results.json and results.csv, each whole or not at all. Errors: fileError.
+Status writeResults(const Json& results, const std::filesystem::path& folder);
+
+/// One line a point, one column a figure of docs/results.md; empty where it wasn't measured.
+std::string resultsCsv(const Json& results);
+
+/// Reads results.json, or what has its schema. Errors: fileError, badInput (another schema).
+Result<Json> readResults(const std::filesystem::path& file);
+
+/// The figures that a point is judged by, by name: frame_ms, trace_ms, reads (a ray), wrong_rays (share not right within 1 %), unresolved,
+/// bytes, probes, bake_s, {beauty,diffuse,glossy}.{mse,relmse,flip}. None where it wasn't measured.
+std::optional<double> figureOf(const Json& point, std::string_view name);
+
+} // namespace sconce

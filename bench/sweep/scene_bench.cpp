@@ -1,0 +1,513 @@
+#include "bench/sweep/scene_bench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+#include <sys/resource.h>
+
+#include "base/safe_file.h"
+#include "bench/race/ray_file.h"
+#include "bench/race/scene_rays.h"
+#include "bench/reference/metrics.h"
+#include "bench/sweep/keys.h"
+#include "bench/sweep/picture_files.h"
+#include "bench/sweep/point_json.h"
+#include "runtime/bake/bake.h"
+#include "runtime/field/field_space.h"
+#include "runtime/field/light_field_file.h"
+#include "scene/scene_check.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr uint32_t kTimerScopes = 32;
+constexpr uint32_t kTemporalFrames = 16; // of a still camera, before a picture that is filtered over time is judged
+constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
+constexpr double kWrongRelMse = 1.0; // of beauty: as far from the truth as a black picture
+constexpr uint64_t kPathSeed = 1000; // the path tracer's paths are not the reference's
+
+double secondsNow()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double cpuSeconds() // of all threads
+{
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::optional<Json> readJson(const std::filesystem::path& file)
+{
+    std::ifstream stream(file);
+    if (!stream) return {};
+    Json json = Json::parse(stream, nullptr, false);
+    if (json.is_discarded()) return {}; // not ours, or damaged: measured again
+    return json;
+}
+
+} // namespace
+
+SceneBench::SceneBench(Gpu& lent, std::string deviceName, Desc made) : gpu(lent), device(std::move(deviceName)), desc(std::move(made))
+{
+    sceneKey = keyOf(desc.scene);
+}
+
+Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string deviceName, Desc desc, const PointSettings& defaults,
+                                                       const Progress& progress)
+{
+    if (std::string fault = validate(desc.scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
+    std::unique_ptr<SceneBench> made(new SceneBench(gpu, std::move(deviceName), std::move(desc)));
+    for (const char* name : {"cache/probes", "cache/fields", "cache/references", "cache/points", "images", "replay"})
+    {
+        std::error_code problem;
+        std::filesystem::create_directories(made->desc.folder / name, problem);
+        if (problem)
+            return Error{ErrorCode::fileError, "The folder '" + made->desc.folder.string() + "' can't be made: " + problem.message() +
+                                                   "; give another one with -o."};
+    }
+    if (made->desc.camera)
+        made->camera = *made->desc.camera;
+    else if (!made->desc.scene.cameras.empty())
+        made->camera = made->desc.scene.cameras.front();
+    else
+    {
+        auto probes = made->probesFor(defaults, progress);
+        if (!probes) return probes.error();
+        const std::vector<PlacedProbe>& placed = probes->set.probes;
+        made->camera.eye = placed.front().position;
+        const vec3 target = placed.size() > 1 ? placed[1].position : made->desc.scene.bounds().centre();
+        made->camera.forward = glm::normalize(target - made->camera.eye);
+        const vec3 world = std::abs(made->camera.forward.y) > 0.999f ? vec3(0.0f, 0.0f, -1.0f) : vec3(0.0f, 1.0f, 0.0f);
+        made->camera.up = glm::normalize(world - glm::dot(world, made->camera.forward) * made->camera.forward);
+    }
+    return made;
+}
+
+std::filesystem::path SceneBench::cached(const char* kind, const std::string& key, const char* extension) const
+{
+    return desc.folder / "cache" / kind / (key + extension);
+}
+
+std::string SceneBench::pointKey(const PlannedPoint& point) const
+{
+    const BenchSettings& s = desc.settings;
+    Json all = {{"build", desc.build},
+                {"device", device},
+                {"scene", sceneKey},
+                {"method", point.settings.method},
+                {"settings", settingsJson(point.settings)},
+                {"size", {s.width, s.height}},
+                {"camera", {toJson(camera.eye), toJson(camera.forward), toJson(camera.up), camera.verticalFov}},
+                {"rays", s.rays},
+                {"reference", {s.referencePaths, s.referenceBounces}},
+                {"seed", s.seed},
+                {"frames", s.frames}};
+    if (point.settings.frame.roughness) all["roughness"] = *point.settings.frame.roughness;
+    return keyOf(all);
+}
+
+std::optional<Json> SceneBench::kept(const PlannedPoint& point) const
+{
+    std::optional<Json> json = readJson(cached("points", pointKey(point), ".json"));
+    if (!json) return {};
+    (*json)["id"] = point.id; // the same settings may be another knob's default
+    (*json)["knob"] = point.knob;
+    (*json)["value"] = point.value;
+    return json;
+}
+
+Status SceneBench::keep(const PlannedPoint& point, const Json& measured) const
+{
+    return writeText(cached("points", pointKey(point), ".json"), measured.dump(1));
+}
+
+std::optional<BenchProbes> SceneBench::keptProbes(const PointSettings& settings) const
+{
+    const std::string key = keyOf(Json{{"build", desc.build}, {"scene", sceneKey}, {"set", probeSetName(settings)}});
+    auto set = loadProbes(cached("probes", key, ".json"));
+    const std::optional<Json> report = readJson(cached("probes", key, ".report.json"));
+    if (!set || !report) return {};
+    return BenchProbes{probeSetName(settings), std::move(*set), *report};
+}
+
+Result<BenchProbes> SceneBench::probesFor(const PointSettings& settings, const Progress& progress)
+{
+    if (auto found = keptProbes(settings)) return std::move(*found);
+    auto made = placeFor(desc.scene, settings, progress);
+    if (!made) return made.error();
+    if (made->set.probes.empty())
+        return Error{ErrorCode::badInput, "Placement " + made->name + " of scene '" + desc.name + "' has no probes; ask for more."};
+    const std::string key = keyOf(Json{{"build", desc.build}, {"scene", sceneKey}, {"set", made->name}});
+    if (auto status = writeText(cached("probes", key, ".report.json"), made->report.dump()); !status) return status.error();
+    if (auto status = saveProbes(made->set, cached("probes", key, ".json")); !status) return status.error();
+    return made;
+}
+
+Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost, const Progress& progress)
+{
+    auto probes = probesFor(settings, progress);
+    if (!probes) return probes.error();
+    cost["probe_set"] = probes->name;
+    cost["place_s"] = probes->report["seconds"];
+    cost["coverage"] = probes->report["coverage"]["rays"];
+    BakeSettings bake;
+    bake.resolution = settings.resolution;
+    bake.chart = settings.chart();
+    bake.bounces = settings.bounces;
+    bake.octree.voxels = settings.octreeVoxels;
+    bake.grid = probes->set.grid;
+    // What is measured of a field doesn't depend on the tracer that reads it: methods share fields.
+    const std::string key = keyOf(Json{{"build", desc.build},
+                                       {"format", kFieldFileVersion},
+                                       {"device", device},
+                                       {"scene", sceneKey},
+                                       {"probes", probes->name},
+                                       {"resolution", bake.resolution},
+                                       {"chart", bake.chart},
+                                       {"bounces", bake.bounces},
+                                       {"voxels", bake.octree.voxels}});
+    const std::filesystem::path file = cached("fields", key, ".sconce");
+    if (const std::optional<Json> known = readJson(cached("fields", key, ".json")))
+        if (auto field = loadField(file))
+        {
+            cost.update(*known);
+            cost["field"] = std::filesystem::relative(file, desc.folder).string();
+            return field;
+        }
+    std::vector<vec3> positions;
+    for (const PlacedProbe& probe : probes->set.probes) positions.push_back(probe.position);
+    BakeReport report;
+    auto field = bakeLightField(gpu.host, desc.scene, positions, bake, progress, report);
+    if (!field) return field;
+    for (const SceneEffect& effect : checkScene(desc.scene).effects)
+        if (effect.called) field->effects.push_back(effect.name);
+    const Json baked = {{"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.bounceSeconds},
+                        {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
+    if (auto status = saveField(*field, file); !status) return status.error();
+    if (auto status = writeText(cached("fields", key, ".json"), baked.dump()); !status) return status.error();
+    cost.update(baked);
+    cost["field"] = std::filesystem::relative(file, desc.folder).string();
+    return field;
+}
+
+Status SceneBench::makeReference(const std::optional<float>& roughness, const Progress& progress)
+{
+    ReferenceSettings settings;
+    settings.width = desc.settings.width;
+    settings.height = desc.settings.height;
+    settings.samples = desc.settings.referencePaths;
+    settings.bounces = desc.settings.referenceBounces;
+    settings.seed = desc.settings.seed;
+    settings.pixelCentre = true; // as the rasteriser's
+    settings.roughness = roughness;
+    settings.camera = camera;
+    Json all = {{"build", desc.build},
+                {"scene", sceneKey},
+                {"size", {settings.width, settings.height}},
+                {"camera", {toJson(camera.eye), toJson(camera.forward), toJson(camera.up), camera.verticalFov}},
+                {"paths", {settings.samples, settings.bounces, settings.seed}}};
+    if (roughness) all["roughness"] = *roughness;
+    const std::string key = keyOf(all);
+    if (std::optional<Json> known = readJson(cached("references", key, ".json")))
+        if (auto images = readExr(cached("references", key, ".exr")))
+        {
+            referenceJson = std::move(*known);
+            referenceImages = std::move(*images);
+            return writeReferencePictures();
+        }
+    if (auto status = makeTruth(); !status) return status;
+    const double begin = secondsNow();
+    auto reference = renderReference(*truth, settings, progress);
+    if (!reference) return reference.error();
+    referenceJson = {{"spp", settings.samples},
+                     {"bounces", settings.bounces},
+                     {"seconds", secondsNow() - begin},
+                     {"estimated_relmse",
+                      {{"beauty", numberOrNull(reference->estimatedRelMse)},
+                       {"diffuse", numberOrNull(reference->estimatedRelMseDiffuse)},
+                       {"glossy", numberOrNull(reference->estimatedRelMseGlossy)}}}};
+    referenceImages = std::move(reference->images);
+    if (auto status = writeExr(referenceImages, cached("references", key, ".exr")); !status) return status;
+    if (auto status = writeText(cached("references", key, ".json"), referenceJson.dump()); !status) return status;
+    return writeReferencePictures();
+}
+
+Status SceneBench::writeReferencePictures()
+{
+    if (!desc.settings.pictures) return success();
+    referenceJson["images"] = Json::object();
+    for (const auto& [name, layer] : kLayers)
+    {
+        const std::string file = "images/" + desc.name + ".reference." + name + ".half";
+        if (auto status =
+                writeHalfPicture(desc.folder / file, referenceImages.width, referenceImages.height, referenceImages.find(layer)->pixels);
+            !status)
+            return status;
+        referenceJson["images"][name] = file;
+    }
+    return success();
+}
+
+Status SceneBench::makeTruth()
+{
+    if (truth) return success();
+    auto embree = RayScene::create(desc.scene);
+    if (!embree) return embree.error();
+    truth.emplace(std::move(*embree));
+    return success();
+}
+
+Status SceneBench::prepare()
+{
+    if (rays) return success();
+    if (auto status = makeTruth(); !status) return status;
+    auto clock = GpuTimer::create(gpu, kTimerScopes);
+    if (!clock) return clock.error();
+    timer.emplace(std::move(*clock));
+    auto set = sceneRays(desc.scene, *truth, desc.settings.rays, desc.settings.seed);
+    if (!set) return set.error();
+    rays = std::move(*set);
+    return saveRays(*rays, desc.folder / "replay" / (desc.name + ".rays"));
+}
+
+/// The scene as frames of a kind need it; made once.
+Result<const DeviceScene*> SceneBench::sceneOf(const IndirectEffects& effects, const Progress& progress)
+{
+    std::optional<DeviceScene>& scene = deviceScenes[effects.fieldShadows ? 1 : 0];
+    if (!scene)
+    {
+        const DeviceSceneDesc wanted = sceneForFrames({.fieldShadows = effects.fieldShadows});
+        auto uploaded = DeviceScene::create(gpu, desc.scene, fieldSpace(desc.scene.bounds()), wanted, progress);
+        if (!uploaded) return uploaded.error();
+        scene.emplace(std::move(*uploaded));
+    }
+    return &*scene;
+}
+
+uint64_t SceneBench::bytesOf(const PointSettings& settings)
+{
+    if (settings.pathTraced()) return 0;
+    return uint64_t(settings.probes) * bytesPerProbe(settings.chart(), settings.resolution);
+}
+
+Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Progress& progress)
+{
+    Live live;
+    live.plan = &point;
+    const PointSettings& settings = point.settings;
+    if (settings.pathTraced()) return live;
+    auto field = fieldFor(settings, live.fieldCost, progress);
+    if (!field) return field.error();
+    auto tracer = TracedMethod::create(gpu, std::move(*field),
+                                       {.opponent = settings.opponent(),
+                                        .quality = settings.quality,
+                                        .distanceBits = settings.distanceBits,
+                                        .lowFactor = settings.lowFactor},
+                                       point.id);
+    if (!tracer) return tracer.error();
+    live.tracer = std::move(*tracer);
+    const gpu::LightFieldInfo& info = live.tracer->data().info;
+    live.fieldCost["probes"] = info.probeCount;
+    live.fieldCost["bytes"] = bytesJson(live.tracer->bytes());
+    RenderSettings frame = settings.frame;
+    frame.width = desc.settings.width;
+    frame.height = desc.settings.height;
+    frame.seed = uint32_t(desc.settings.seed);
+    if (const std::optional<Baseline> opponent = settings.opponent())
+    {
+        frame.glossyShader = traceGlossyPass(*opponent);
+        frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
+    }
+    auto scene = sceneOf(frame.effects, progress);
+    if (!scene) return scene.error();
+    auto renderer = SceneRenderer::create(gpu, **scene, live.tracer->lightField(), frame);
+    if (!renderer) return renderer.error();
+    live.renderer = std::move(*renderer);
+    return live;
+}
+
+Result<Json> SceneBench::errorsOf(const ImageSet& picture) const
+{
+    Json errors = Json::object();
+    for (const auto& [name, layer] : kLayers)
+    {
+        CompareSettings settings;
+        settings.layer = layer;
+        settings.psnr = false;
+        auto compared = compareImages(picture, referenceImages, settings);
+        if (!compared) return compared.error();
+        errors[name] = {
+            {"mse", numberOrNull(*compared->mse)}, {"relmse", numberOrNull(*compared->relMse)}, {"flip", numberOrNull(*compared->flip)}};
+    }
+    return errors;
+}
+
+ReferenceSettings SceneBench::pathSettings(const PlannedPoint& point) const
+{
+    ReferenceSettings paths;
+    paths.width = desc.settings.width;
+    paths.height = desc.settings.height;
+    paths.samples = point.settings.paths;
+    paths.bounces = point.settings.bounces; // what the light fields have, too
+    paths.seed = desc.settings.seed + kPathSeed;
+    paths.roughness = point.settings.frame.roughness;
+    paths.pixelCentre = true;
+    paths.guides = false;
+    paths.camera = camera;
+    return paths;
+}
+
+Result<Json> SceneBench::measure(Live& live, const Progress& progress)
+{
+    const PlannedPoint& point = *live.plan;
+    Json json = {{"id", point.id}, {"method", point.settings.method}, {"knob", point.knob}, {"value", point.value}};
+    json["settings"] = settingsJson(point.settings);
+    json["clock"] = point.settings.pathTraced() || software() ? "cpu" : "device";
+    if (point.settings.pathTraced())
+    {
+        auto picture = renderReference(*truth, pathSettings(point), progress);
+        if (!picture) return picture.error();
+        auto errors = errorsOf(picture->images);
+        if (!errors) return errors.error();
+        json["error"] = std::move(*errors);
+        json["wrong"] = wrongness(json, referenceImages.find("beauty")->pixels);
+        return json;
+    }
+    json.update(live.fieldCost);
+    auto score = live.tracer->score(*rays);
+    if (!score) return score.error();
+    json["rays"] = raysJson(*score);
+    Result<RenderedFrame> frame = live.renderer->render(camera);
+    const uint32_t frames = point.settings.frame.effects.temporal ? kTemporalFrames : 1;
+    for (uint32_t i = 1; i < frames && frame; ++i) frame = live.renderer->render(camera, i);
+    if (!frame) return frame.error();
+    auto errors = errorsOf(lightLayers(*frame));
+    if (!errors) return errors.error();
+    json["error"] = std::move(*errors);
+    json["wrong"] = wrongness(json, referenceImages.find("beauty")->pixels);
+    if (desc.settings.pictures && point.knob == "default")
+    {
+        auto pictures = writePictures(point, *frame);
+        if (!pictures) return pictures.error();
+        json["images"] = std::move(*pictures);
+    }
+    if (!report(progress, "measure", 1.0)) return Error{ErrorCode::cancelled, "Interrupted; what was measured before is kept."};
+    return json;
+}
+
+Result<Json> SceneBench::writePictures(const PlannedPoint& point, const RenderedFrame& frame)
+{
+    Json json = Json::object();
+    const std::string stem = "images/" + desc.name + "." + point.settings.method + ".";
+    const ImageSet layers = lightLayers(frame);
+    for (const auto& [name, layer] : kLayers)
+    {
+        const std::string file = stem + name + ".half";
+        if (auto status = writeHalfPicture(desc.folder / file, frame.width, frame.height, layers.find(layer)->pixels); !status)
+            return status.error();
+        json[name] = file;
+    }
+    const char* const counts[] = {"probe", "handoffs", "reads", "unresolved"};
+    for (int part = 0; part < 4; ++part)
+    {
+        std::vector<uint32_t> numbers;
+        for (size_t i = 0; i < frame.counts.size(); ++i)
+            numbers.push_back(frame.depth[i] > 0.0f ? frame.counts[i][part] : gpu::kNoProbe); // no surface: no count
+        const std::string file = stem + counts[part] + ".u32";
+        if (auto status = writeNumberPicture(desc.folder / file, frame.width, frame.height, numbers); !status) return status.error();
+        json[counts[part]] = file;
+    }
+    return json;
+}
+
+bool SceneBench::software() const
+{
+    return gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+Result<SceneBench::Passes> SceneBench::timeFrame(Live& live, uint32_t turn)
+{
+    Passes passes;
+    const double cpu = cpuSeconds();
+    const auto milliseconds = [cpu] { return 1e3 * (cpuSeconds() - cpu) / std::max(1u, std::thread::hardware_concurrency()); };
+    if (live.plan->settings.pathTraced())
+    {
+        ReferenceSettings paths = pathSettings(*live.plan);
+        paths.seed += turn;
+        auto picture = renderReference(*truth, paths);
+        if (!picture) return picture.error();
+        passes.emplace_back("path tracing", milliseconds());
+        return passes;
+    }
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            live.renderer->record(cmd, camera, turn + 1, &*timer);
+        });
+    if (!status) return status.error();
+    const double used = milliseconds();
+    double sum = 0.0;
+    for (const GpuTimer::Scope& scope : timer->read())
+    {
+        passes.emplace_back(scope.name, scope.milliseconds);
+        sum += scope.milliseconds;
+    }
+    if (software() && sum > 0.0) // its clock also runs while the cores work for others
+        for (auto& [name, time] : passes) time *= used / sum;
+    return passes;
+}
+
+Json SceneBench::describe(std::span<const PlannedPoint> points) const
+{
+    const Scene& scene = desc.scene;
+    const Bounds bounds = scene.bounds();
+    const vec3 target = camera.eye + camera.forward;
+    Json json = {{"name", desc.name},
+                 {"source", desc.source},
+                 {"triangles", scene.triangles.size()},
+                 {"width", desc.settings.width},
+                 {"height", desc.settings.height},
+                 {"camera",
+                  {{"name", camera.name},
+                   {"eye", toJson(camera.eye)},
+                   {"target", toJson(target)},
+                   {"fov_degrees", glm::degrees(camera.verticalFov)}}},
+                 {"bounds", {{"min", toJson(bounds.low)}, {"max", toJson(bounds.high)}}}};
+    if (!points.empty() && points.front().settings.frame.roughness) json["roughness"] = *points.front().settings.frame.roughness;
+    if (!referenceJson.is_null()) json["reference"] = referenceJson;
+    std::vector<float> heights; // of our default's probes
+    Json sets = Json::object();
+    for (const PlannedPoint& point : points)
+    {
+        if (point.settings.pathTraced() || sets.contains(probeSetName(point.settings))) continue;
+        const std::optional<BenchProbes> kept = keptProbes(point.settings);
+        if (!kept) continue;
+        Json set = kept->report;
+        set["probes"] = Json::array();
+        for (const PlacedProbe& probe : kept->set.probes)
+        {
+            set["probes"].push_back({{"position", toJson(probe.position)}, {"why", probe.why}});
+            if (&point == points.data()) heights.push_back(probe.position.y);
+        }
+        sets[kept->name] = std::move(set);
+    }
+    if (!heights.empty())
+    {
+        std::ranges::nth_element(heights, heights.begin() + ptrdiff_t(heights.size() / 2));
+        const float height = heights[heights.size() / 2];
+        json["plan"] = {{"height", height}, {"segments", sectionAt(scene, height)}};
+    }
+    json["probe_sets"] = std::move(sets);
+    return json;
+}
+
+} // namespace sconce

@@ -1,0 +1,315 @@
+#include "runtime/bake/bake.h"
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "base/limits.h"
+#include "base/numbers.h"
+#include "base/parallel.h"
+#include "runtime/bake/host_memory.h"
+#include "runtime/bake/probe_baker.h"
+#include "runtime/bake/probe_clearance.h"
+#include "runtime/field/field_space.h"
+#include "runtime/field/octree_builder.h"
+#include "runtime/field/tracer_cpu.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+class Stopwatch
+{
+public:
+    double lap()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last).count();
+        last = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
+};
+
+std::string argumentFault(std::span<const vec3> probes, const BakeSettings& settings)
+{
+    if (settings.chart != gpu::kChartCube && settings.chart != gpu::kChartOctahedral)
+        return "chart is " + std::to_string(settings.chart) + "; give kChartCube or kChartOctahedral";
+    const bool even = settings.chart == gpu::kChartCube && settings.resolution % 32 == 0; // faces with three levels of the chain
+    if ((!even && !std::has_single_bit(settings.resolution)) || settings.resolution < 16 || settings.resolution > 2048)
+        return "resolution is " + std::to_string(settings.resolution) +
+               "; give a power of two in [16, 2048], or a multiple of 32 for the cube chart";
+    if (!settings.scene.light.areaShadows)
+        return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
+    if (settings.bounces > 64) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 64]";
+    if (!(settings.converged >= 0.0f && settings.converged <= 1.0f))
+        return "converged is " + std::to_string(settings.converged) + "; give a value in [0, 1]";
+    if (probes.empty() || probes.size() > kMostProbes)
+        return "there are " + std::to_string(probes.size()) + " probes; give between 1 and " + std::to_string(kMostProbes);
+    for (size_t i = 0; i < probes.size(); ++i)
+        if (!std::isfinite(probes[i].x + probes[i].y + probes[i].z))
+            return "probe " + std::to_string(i) + " has a position that is not finite; mend the list of probes";
+    if (settings.grid &&
+        (glm::any(glm::lessThan(settings.grid->count, glm::ivec3(1))) ||
+         size_t(settings.grid->count.x) * size_t(settings.grid->count.y) * size_t(settings.grid->count.z) != probes.size()))
+        return "the grid has " + std::to_string(settings.grid->count.x) + "x" + std::to_string(settings.grid->count.y) + "x" +
+               std::to_string(settings.grid->count.z) + " probes but there are " + std::to_string(probes.size());
+    return {};
+}
+
+/// The cube faces' level 0 words at half their size, each from the plane of one of its four texels, with their chain: what summaries and
+/// octree of an octahedral field are made from.
+void halveFaces(std::span<const uint32_t> faces, uint32_t size, const gpu::LightFieldInfo& half, uint32_t* out)
+{
+    static const FieldData none;
+    twin::LightFieldTwin<float> text(none, {});
+    for (uint32_t face = 0; face < 6; ++face)
+    {
+        uint32_t* words = out + size_t(face) * (half.wordsPerProbe / 6);
+        for (uint32_t y = 0; y < half.faceSize; ++y)
+            for (uint32_t x = 0; x < half.faceSize; ++x)
+            {
+                const uint32_t word = faces[(size_t(face) * size + 2 * y) * size + 2 * x];
+                const float gx = text.unpackGradient(word >> 16), gy = text.unpackGradient(word >> 24);
+                const float change = std::max(1.0f + 0.5f * gx + 0.5f * gy, 0.5f);
+                words[y * half.faceSize + x] =
+                    (word & 0xffffu) ? text.packTexel(text.halfToReal(word) * change, 2.0f * gx / change, 2.0f * gy / change) : 0;
+            }
+        buildChain(words, half.faceSize);
+    }
+}
+
+void setChart(gpu::LightFieldInfo& info, uint32_t chart, uint32_t size)
+{
+    info.chart = chart;
+    info.faceSize = size;
+    info.topLevel = chart == gpu::kChartCube ? coarsestLevel(size) : 0;
+    info.wordsPerProbe = distanceWordsPerProbe(chart, size);
+}
+
+/// Mean radiance over all probes and directions, luminance (Rec. 709 weights).
+double meanRadiance(const FieldData& field)
+{
+    const uint32_t n = field.info.faceSize, faces = field.info.chart == gpu::kChartCube ? 6 : 1;
+    std::vector<double> solidAngle(size_t(n) * n), sums(field.probes.size());
+    twin::LightFieldTwin<float> chart(field, {});
+    double all = 0.0;
+    for (uint32_t i = 0; i < n * n; ++i)
+    {
+        const glm::vec2 uv = (glm::vec2(i % n, i / n) + 0.5f) / float(n);
+        const glm::vec3 d = faces == 6 ? glm::normalize(glm::vec3(2.0f * uv - 1.0f, 1.0f)) : chart.directionFromOctahedral(uv);
+        const double off = faces == 6 ? d.z : std::abs(d.x) + std::abs(d.y) + std::abs(d.z); // 1 / distance of the chart's point
+        solidAngle[i] = off * off * off;
+        all += solidAngle[i] * faces;
+    }
+    parallelFor(field.probes.size(),
+                [&](size_t probe)
+                {
+                    twin::LightFieldTwin<float> text(field, {});
+                    const size_t first = probe * faces * n * n;
+                    for (size_t i = 0; i < size_t(faces) * n * n; ++i)
+                    {
+                        const glm::vec3 light = text.unpackRadiance(field.radiance[first + i]);
+                        sums[probe] += solidAngle[i % (size_t(n) * n)] * glm::dot(light, kLuminance);
+                    }
+                });
+    return std::accumulate(sums.begin(), sums.end(), 0.0) / (all * double(field.probes.size()));
+}
+
+/// Refuses what would take more main memory than there is, while nothing is taken.
+Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool emitters, bool deviceIsHost)
+{
+    const gpu::LightFieldInfo& info = field.info;
+    const bool octahedral = info.chart == gpu::kChartOctahedral;
+    const uint64_t distance = info.wordsPerProbe, cube = octahedral ? distanceWordsPerProbe(gpu::kChartCube, info.faceSize / 2) : 0;
+    const uint64_t light = radianceWordsPerProbe(info.chart, info.faceSize); // radiance, surfaces, direct light, emission
+    const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 ? 3 : 2) * light + (emitters ? light : 0);
+    const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
+    if (needed <= allowed) return success();
+    return Error{ErrorCode::outOfMemory, "A bake of " + std::to_string(field.probes.size()) + " probes with maps of " +
+                                             std::to_string(settings.resolution) + " texels takes about " + std::to_string(needed >> 20) +
+                                             " MiB of main memory, and it may have " + std::to_string(allowed >> 20) +
+                                             " MiB; give fewer probes or a lower resolution"};
+}
+
+/// A bake in progress: the field and what the bounces need besides.
+struct Bake
+{
+    FieldData field;
+    FieldData cube;                                  // octahedral chart: the cube faces that octree and summaries are made from
+    std::vector<uint32_t> surfaces, direct, emitted; // emitted is empty when the scene has no emitters
+    const Progress& progress;
+
+    bool octahedral() const { return field.info.chart == gpu::kChartOctahedral; }
+
+    ProbeTarget target(size_t probe)
+    {
+        const size_t words = field.info.wordsPerProbe, texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
+        const size_t irradiance = kIrradianceWordsPerProbe;
+        return {std::span(field.distance).subspan(probe * words, words),
+                std::span(field.radiance).subspan(probe * texels, texels),
+                std::span(surfaces).subspan(probe * texels, texels),
+                emitted.empty() ? std::span<uint32_t>() : std::span(emitted).subspan(probe * texels, texels),
+                std::span(field.irradiance).subspan(probe * irradiance, irradiance),
+                {}};
+    }
+
+    Status cancelledIfAsked(std::string_view stage, size_t done, size_t count) const
+    {
+        if (report(progress, stage, double(done) / double(count))) return success();
+        return Error{ErrorCode::cancelled,
+                     "The bake was stopped at " + std::string(stage) + ", " + std::to_string(done) + " of " + std::to_string(count)};
+    }
+
+    Status directLight(ProbeBaker& baker);
+    Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
+    Status bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number);
+};
+
+Status Bake::directLight(ProbeBaker& baker)
+{
+    std::vector<uint32_t> faces(octahedral() ? size_t(6) * field.info.faceSize * field.info.faceSize : 0);
+    for (size_t i = 0; i < field.probes.size(); ++i)
+    {
+        if (auto status = cancelledIfAsked("probes", i, field.probes.size()); !status) return status;
+        ProbeTarget to = target(i);
+        to.faces = faces;
+        if (auto status = baker.bakeDirect(field.probes[i].centre, to); !status) return status;
+        if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cube.distance.data() + i * cube.info.wordsPerProbe);
+    }
+    return success();
+}
+
+Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
+{
+    FieldData& seen = octahedral() ? cube : field;
+    parallelFor(seen.probes.size(), [&](size_t i) { summariseProbe(seen, i); });
+    const ProbeMaps maps{seen.info, seen.probes, seen.distance};
+    auto octree = buildOctreeOnDevice(gpu, maps, settings, progress);
+    onDevice = bool(octree);
+    // All maps at once may be more than the device has beside the scene; the host gives the same bytes.
+    if (!octree && octree.error().code == ErrorCode::outOfMemory) octree = buildOctree(maps, settings, progress);
+    if (!octree) return octree.error();
+    if (octahedral()) field.probes = cube.probes;
+    cube = FieldData();
+    attachOctree(field, *octree);
+    return success();
+}
+
+Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
+{
+    // The whole field's irradiance as it was before this bounce, so that the order of the probes doesn't matter.
+    FieldData lit;
+    lit.info = field.info;
+    lit.probes = field.probes;
+    lit.octree = field.octree;
+    lit.irradiance = field.irradiance;
+    lit.distance = std::move(field.distance); // tells which probes a wall hides; lent, since it is half of the field
+    auto device = LightField::create(gpu, lit);
+    field.distance = std::move(lit.distance);
+    if (!device) return device.error();
+    const std::string stage = "bounce " + std::to_string(number);
+    const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
+    for (size_t i = 0; i < field.probes.size(); ++i)
+    {
+        if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
+        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i));
+        if (!status) return status;
+    }
+    return success();
+}
+
+} // namespace
+
+Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                                 const Progress& progress, BakeReport& bakeReport)
+{
+    if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
+    if (scene.triangles.empty())
+        return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no triangles; there is nothing to bake"};
+    Bake bake{{}, {}, {}, {}, {}, progress};
+    BakeReport spent;
+    Stopwatch watch;
+    gpu::LightFieldInfo& info = bake.field.info;
+    info = fieldSpace(scene.bounds());
+    info.sky = scene.sky;
+    info.probeCount = uint32_t(probes.size());
+    setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
+    if (settings.grid)
+    {
+        info.gridX = uint32_t(settings.grid->count.x);
+        info.gridY = uint32_t(settings.grid->count.y);
+        info.gridZ = uint32_t(settings.grid->count.z);
+        info.gridOrigin = (settings.grid->origin - info.origin) / info.scale;
+        info.gridStep = settings.grid->step / info.scale;
+    }
+    bake.field.resolution = settings.resolution;
+    bake.field.sceneName = scene.name;
+    bake.field.effects = settings.effects;
+    bake.field.probes.resize(probes.size());
+    // A grid is looked up by its formula: its probes stay.
+    const ClearedProbes cleared = clearedOfSurfaces(scene, probes, settings.grid ? 0.0f : 2.0f * kProbeNear * info.diagonal * info.scale);
+    spent.moved = cleared.moved;
+    spent.tight = cleared.tight;
+    for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (cleared.positions[i] - info.origin) / info.scale;
+
+    auto gpu = Gpu::create(host);
+    if (!gpu) return gpu.error();
+    {
+        auto deviceScene = DeviceScene::create(**gpu, scene, info, settings.scene, progress);
+        if (!deviceScene) return deviceScene.error();
+        auto baker = ProbeBaker::create(**gpu, *deviceScene, info);
+        if (!baker) return baker.error();
+        spent.lights = uint32_t(deviceScene->lights().lights.size());
+        spent.sceneSeconds = watch.lap();
+
+        const bool emitters = deviceScene->lights().header.emitterCount > 0;
+        const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+        if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
+        const size_t texels = probes.size() * radianceWordsPerProbe(info.chart, info.faceSize);
+        bake.field.distance.resize(probes.size() * info.wordsPerProbe);
+        bake.field.radiance.resize(texels);
+        bake.surfaces.resize(texels);
+        if (emitters) bake.emitted.resize(texels);
+        bake.field.irradiance.resize(probes.size() * kIrradianceWordsPerProbe);
+        if (bake.octahedral())
+        {
+            bake.cube.info = info;
+            setChart(bake.cube.info, gpu::kChartCube, info.faceSize / 2);
+            bake.cube.probes = bake.field.probes;
+            bake.cube.distance.resize(probes.size() * bake.cube.info.wordsPerProbe);
+        }
+        if (auto status = bake.directLight(**baker); !status) return status.error();
+        spent.probeSeconds = watch.lap();
+        if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
+        spent.octreeSeconds = watch.lap();
+        if (settings.bounces > 0) bake.direct = bake.field.radiance;
+        double energy = meanRadiance(bake.field);
+        spent.energy.push_back(energy);
+        for (uint32_t b = 1; b <= settings.bounces; ++b)
+        {
+            if (auto status = bake.bounce(**gpu, **baker, b); !status) return status.error();
+            const double with = meanRadiance(bake.field);
+            spent.energy.push_back(with - energy);
+            bake.field.bounces = b;
+            energy = with;
+            if (spent.energy.back() < double(settings.converged) * with) break;
+        }
+        spent.bounceSeconds = watch.lap();
+        makePatches(bake.field, bake.surfaces, bake.emitted);
+        if (settings.prefiltered) prefilterRadiance(bake.field);
+        if (!settings.radiance) bake.field.radiance = {};
+        spent.prefilterSeconds = watch.lap();
+        spent.peakDeviceBytes = (*gpu)->memory().peak();
+    }
+    if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};
+    bakeReport = spent;
+    return std::move(bake.field);
+}
+
+} // namespace sconce

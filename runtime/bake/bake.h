@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "base/progress.h"
+#include "runtime/field/field_data.h"
+#include "runtime/scene/device_scene.h"
+#include "runtime/vulkan/host_vulkan.h"
+#include "scene/probe_grid.h"
+#include "svo/build_octree.h"
+
+namespace sconce
+{
+
+struct BakeSettings
+{
+    uint32_t resolution = 512;        // texels a side of an octahedral map, power of two, 16..2048; cube faces have half of it
+    uint32_t chart = gpu::kChartCube; // or kChartOctahedral, which the grid baselines need
+    uint32_t bounces = 2;             // times the baked light is re-injected at most, 0..64; each costs one gather a texel
+    float converged = 0.0f;           // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
+    DeviceSceneDesc scene;            // textures and lights
+    std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
+    bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
+    bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
+    OctreeSettings octree;
+    std::optional<ProbeGrid> grid; // set when the probes are a uniform one
+    uint64_t hostMemory = 0;       // bytes of main memory that it may take; 0: what is free
+};
+
+/// What a bake cost. Seconds are wall-clock.
+struct BakeReport
+{
+    double sceneSeconds = 0.0;   // upload and shadow maps
+    double probeSeconds = 0.0;   // faces, direct light, chains, first irradiance
+    double octreeSeconds = 0.0;  // summaries and octree
+    bool octreeOnDevice = false; // else the maps didn't fit the device's memory and the host built it: the same bytes, later
+    double bounceSeconds = 0.0;
+    double prefilterSeconds = 0.0;
+    uint64_t peakDeviceBytes = 0;
+    /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
+    /// and then what each bounce adds.
+    std::vector<double> energy;
+    uint32_t lights = 0; // delta lights, emitter samples and sky directions
+    uint32_t moved = 0;  // probes that stood on a surface, or nearer than the faces' near plane, and were moved off it
+    uint32_t tight = 0;  // of them, those that found no place, between surfaces: they see through one of them
+};
+
+/// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then by its own irradiance, bounce
+/// by bounce. A probe's maps before the first bounce don't depend on the other probes. Same input, same driver: same bytes.
+/// Specular reflection is baked as diffuse reflection of the same strength: a probe's texel holds one radiance for all directions.
+/// @param probes  world, metres; at least one, at most 65,535. One that stands on a surface, or nearer to it than 2e-4 of the diagonal, is
+/// moved
+///                off it (runtime/bake/probe_clearance.h) where the probes are no grid
+/// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, cancelled.
+Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                                 const Progress& progress, BakeReport& report);
+
+} // namespace sconce

@@ -1,0 +1,365 @@
+#include "runtime/bake/probe_baker.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include "runtime/vulkan/nan_scan.h"
+
+#include "spirv/bake_bounce_comp.h"
+#include "spirv/bake_chain_comp.h"
+#include "spirv/bake_downsample_moments_comp.h"
+#include "spirv/bake_downsample_radiance_comp.h"
+#include "spirv/bake_gather_irradiance_comp.h"
+#include "spirv/bake_gather_moments_comp.h"
+#include "spirv/bake_gbuffer_frag.h"
+#include "spirv/bake_gbuffer_masked_frag.h"
+#include "spirv/bake_gbuffer_vert.h"
+#include "spirv/bake_octahedral_comp.h"
+#include "spirv/bake_octahedral_low_comp.h"
+#include "spirv/bake_surface_comp.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32B32A32_UINT; // layout: shaders/bake_gbuffer.frag
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
+{
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
+}
+
+} // namespace
+
+Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info)
+{
+    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info));
+    baker->octahedral = info.chart == gpu::kChartOctahedral;
+    baker->emitters = scene.lights().header.emitterCount > 0;
+    baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
+    if (auto status = baker->createBuffers(); !status) return status.error();
+    if (auto status = baker->createPipelines(); !status) return status.error();
+    return baker;
+}
+
+Status ProbeBaker::createBuffers()
+{
+    const uint32_t n = info.faceSize, faceTexels = 6 * n * n;
+    ImageDesc desc;
+    desc.width = n;
+    desc.height = 6 * n;
+    desc.format = kSurfaceFormat;
+    desc.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    auto surface = gpu.makeImage(desc, "A probe's faces");
+    if (!surface) return surface.error();
+    surfaceImage = std::move(*surface);
+    desc.format = kDepthFormat;
+    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    auto depth = gpu.makeImage(desc, "A probe's depth");
+    if (!depth) return depth.error();
+    depthImage = std::move(*depth);
+
+    struct Need
+    {
+        Buffer& buffer;
+        uint64_t count; // words
+        MemoryUse use;
+        const char* what;
+    };
+    const uint64_t transferWords =
+        uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWordsPerProbe + (octahedral ? faceTexels : 0);
+    std::vector<Need> needs = {{words, info.wordsPerProbe, MemoryUse::device, "A probe's distance words"},
+                               {light, 4ull * radianceWords, MemoryUse::device, "A probe's radiance"},
+                               {cells, 4ull * 6 * 32 * 32, MemoryUse::device, "A probe's coarse cells"},
+                               {irradiance, kIrradianceWordsPerProbe, MemoryUse::device, "A probe's irradiance"},
+                               {transfer, transferWords, MemoryUse::readback, "The bake's transfer buffer"}};
+    if (octahedral)
+    {
+        needs.push_back({faceWords, faceTexels, MemoryUse::device, "A probe's face words"});
+        needs.push_back({faceLight, 3ull * faceTexels, MemoryUse::device, "A probe's face radiance"});
+    }
+    for (const Need& need : needs)
+    {
+        auto buffer = gpu.makeBuffer(need.count * 4, 0, need.use, need.what);
+        if (!buffer) return buffer.error();
+        need.buffer = std::move(*buffer);
+    }
+    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+    auto set = DescriptorSet::create(gpu, bindings);
+    if (!set) return set.error();
+    images = std::move(*set);
+    images.write(0, surfaceImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    images.write(1, depthImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    return success();
+}
+
+Status ProbeBaker::createPipelines()
+{
+    const VkDescriptorSetLayout sceneSet[] = {scene.layout()};
+    const VkFormat formats[] = {kSurfaceFormat};
+    Pipeline::Graphics desc;
+    desc.vertex = bake_gbuffer_vert;
+    desc.sets = sceneSet;
+    desc.pushBytes = sizeof(SceneView);
+    desc.vertexBindings = SceneMesh::vertexBindings();
+    desc.vertexAttributes = SceneMesh::vertexAttributes();
+    desc.colorFormats = formats;
+    desc.depthFormat = kDepthFormat;
+    for (const auto& [pipeline, fragment] : {std::pair<Pipeline*, Spirv>{&opaque, bake_gbuffer_frag}, {&masked, bake_gbuffer_masked_frag}})
+    {
+        if (pipeline == &masked && !scene.mesh().hasMasked()) continue;
+        desc.fragment = fragment;
+        auto made = Pipeline::graphics(gpu, desc);
+        if (!made) return made.error();
+        *pipeline = std::move(*made);
+    }
+    const VkDescriptorSetLayout sceneAndImages[] = {scene.layout(), images.layout()};
+    const VkDescriptorSetLayout imagesOnly[] = {images.layout()};
+    struct Pass
+    {
+        Pipeline& pipeline;
+        Spirv code;
+        std::span<const VkDescriptorSetLayout> sets;
+    };
+    for (const Pass& pass : {Pass{surfacePass, bake_surface_comp, sceneAndImages}, Pass{chainPass, bake_chain_comp, {}},
+                             Pass{octahedralPass, bake_octahedral_comp, imagesOnly}, Pass{lowPass, bake_octahedral_low_comp, {}},
+                             Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
+                             Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
+    {
+        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(Push));
+        if (!made) return made.error();
+        pass.pipeline = std::move(*made);
+    }
+    return success();
+}
+
+ProbeBaker::Push ProbeBaker::pushFor(vec3 centre) const
+{
+    const VkDeviceAddress base = light.address(), part = VkDeviceAddress(radianceWords) * 4;
+    Push push{};
+    push.words = words.address();
+    push.radiance = base;
+    push.surface = base + part;
+    push.emitted = emitters ? base + 2 * part : 0;
+    push.extra = base + 3 * part;
+    push.centre = centre;
+    push.nearPlane = kProbeNear * info.diagonal;
+    push.size = info.faceSize;
+    push.faceWords = octahedral ? 0 : info.wordsPerProbe / 6;
+    push.chart = info.chart;
+    push.sky = info.sky;
+    push.skyDistance = 2.0f * info.diagonal;
+    return push;
+}
+
+void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const Push& push,
+                          uint32_t width, uint32_t layers)
+{
+    pipeline.bind(cmd, sets);
+    pipeline.push(cmd, push);
+    gpu.vk.CmdDispatch(cmd, (width + 7) / 8, (width + 7) / 8, layers);
+    afterCompute(gpu, cmd);
+}
+
+void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
+{
+    const uint32_t n = info.faceSize;
+    transition(gpu, cmd, surfaceImage,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
+                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
+    const VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    transition(gpu, cmd, depthImage,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE, tests, 0,
+                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
+    VkRenderingAttachmentInfo color{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    color.imageView = surfaceImage.view();
+    color.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    color.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // only read where the depth says that something is there
+    color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    depth.imageView = depthImage.view();
+    depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea = {{0, 0}, {n, 6 * n}};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 1;
+    rendering.pColorAttachments = &color;
+    rendering.pDepthAttachment = &depth;
+    gpu.vk.CmdBeginRendering(cmd, &rendering);
+    scene.mesh().bind(cmd);
+    const VkDescriptorSet sets[] = {scene.descriptorSet()};
+    for (int face = 0; face < 6; ++face)
+    {
+        const VkViewport viewport{0.0f, float(n) * float(face), float(n), float(n), 0.0f, 1.0f};
+        const VkRect2D scissor{{0, int32_t(n) * face}, {n, n}};
+        gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+        gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+        const SceneView view = faceView(centre, face, kProbeNear * info.diagonal);
+        scene.mesh().leaveOutBackFaces(cmd, view);
+        scene.mesh().cull(view, draws);
+        for (const auto& [pipeline, runs] : {std::pair(&opaque, &draws.opaque), std::pair(&masked, &draws.masked)})
+        {
+            if (runs->empty()) continue;
+            pipeline->bind(cmd, sets);
+            pipeline->push(cmd, view);
+            scene.mesh().draw(cmd, *runs);
+        }
+    }
+    gpu.vk.CmdEndRendering(cmd);
+    transition(gpu, cmd, surfaceImage,
+               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    transition(gpu, cmd, depthImage,
+               {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, tests,
+                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    scanImage(gpu, cmd, "bake faces", depthImage, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
+void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
+{
+    const uint32_t n = info.faceSize;
+    Push push = pushFor(centre);
+    if (octahedral)
+    {
+        push.words = faceWords.address();
+        push.radiance = faceLight.address();
+        push.surface = faceLight.address() + VkDeviceAddress(6) * n * n * 4;
+        push.emitted = emitters ? faceLight.address() + VkDeviceAddress(12) * n * n * 4 : 0;
+        push.faceWords = n * n;
+    }
+    const VkDescriptorSet both[] = {scene.descriptorSet(), images.handle()};
+    dispatch(cmd, surfacePass, both, push, n, 6);
+    const auto scanLight = [&](const char* pass, VkDeviceSize first)
+    { scanBuffer(gpu, cmd, pass, light, {.kind = gpu::kScanRadiance, .first = first, .count = radianceWords}); };
+    if (!octahedral)
+    {
+        scanLight("bake surfaces", 0);
+        if (emitters) scanLight("bake surfaces", 2 * radianceWords);
+        for (push.level = 2; push.level <= info.topLevel; push.level += 2)
+            dispatch(cmd, chainPass, {}, push, (n + (1u << push.level) - 1) >> push.level, 6);
+        push.level = 0; // the far bounds
+        dispatch(cmd, chainPass, {}, push, uint32_t(std::ceil(std::sqrt(double(push.faceWords - n * n)))), 6);
+        scanBuffer(gpu, cmd, "bake chain", words, {.kind = gpu::kScanNearness, .count = info.wordsPerProbe});
+        return;
+    }
+    scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
+    scanBuffer(gpu, cmd, "bake surfaces", faceLight, {.kind = gpu::kScanRadiance, .count = VkDeviceSize(6) * n * n});
+    push = pushFor(centre);
+    push.extra = faceLight.address();
+    const VkDescriptorSet imagesOnly[] = {images.handle()};
+    dispatch(cmd, octahedralPass, imagesOnly, push, n, 1);
+    dispatch(cmd, lowPass, {}, push, n / gpu::kLowFactor, 1);
+    scanBuffer(gpu, cmd, "bake octahedral map", words, {.kind = gpu::kScanDistance, .count = info.wordsPerProbe});
+    scanLight("bake octahedral map", 0);
+}
+
+void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
+{
+    Push push = pushFor(vec3(0.0f));
+    push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
+    while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
+    push.extra = cells.address();
+    const uint32_t faces = octahedral ? 1 : 6;
+    dispatch(cmd, downsample[moments], {}, push, push.level, faces);
+    scanBuffer(gpu, cmd, moments ? "bake moments" : "bake irradiance", cells, {.count = VkDeviceSize(4) * faces * push.level * push.level});
+    push.words = irradiance.address();
+    dispatch(cmd, gather[moments], {}, push, gpu::kIrradianceSize, 1);
+    scanBuffer(
+        gpu, cmd, moments ? "bake moments" : "bake irradiance", irradiance,
+        {.kind = gpu::kScanIrradiance, .stride = 2, .mask = moments ? 2u : 1u}); // the other half is not made yet, or is the last bounce's
+}
+
+void ProbeBaker::copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from)
+{
+    gpu.vk.CmdCopyBuffer(cmd, from.handle(), transfer.handle(), uint32_t(pieces.size()), pieces.data());
+}
+
+Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
+{
+    const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), lightBytes = radianceWords * VkDeviceSize(emitters ? 12 : 8);
+    const VkDeviceSize faceBytes = octahedral ? VkDeviceSize(6) * info.faceSize * info.faceSize * 4 : 0;
+    assert(target.distance.size_bytes() == wordBytes && target.radiance.size() == radianceWords && target.surface.size() == radianceWords &&
+           target.emitted.size() == (emitters ? radianceWords : 0) && target.irradiance.size() == kIrradianceWordsPerProbe &&
+           target.faces.size_bytes() == faceBytes);
+    const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWordsPerProbe * 4;
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            recordFaces(cmd, centre);
+            recordMaps(cmd, centre);
+            recordGather(cmd, false);
+            recordGather(cmd, true);
+            copyOut(cmd, std::array{VkBufferCopy{0, 0, wordBytes}}, words);
+            copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
+            copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
+            if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                          VK_ACCESS_2_HOST_READ_BIT);
+        });
+    if (!status) return status;
+    const std::byte* from = transfer.mapped();
+    for (const std::span<uint32_t> part :
+         {target.distance, target.radiance, target.surface, target.emitted, target.irradiance, target.faces})
+    {
+        if (!part.empty()) std::memcpy(part.data(), from, part.size_bytes());
+        from += part.size_bytes();
+    }
+    return success();
+}
+
+Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target)
+{
+    if (!bouncePass)
+    {
+        const VkDescriptorSetLayout sets[] = {field.layout()};
+        auto made = Pipeline::compute(gpu, bake_bounce_comp, sets, sizeof(Push), field.constants());
+        if (!made) return made.error();
+        bouncePass = std::move(*made);
+    }
+    const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), radianceBytes = radianceWords * VkDeviceSize(4);
+    assert(direct.size() == radianceWords && target.surface.size() == radianceWords && target.radiance.size() == radianceWords);
+    std::memcpy(transfer.mapped(), target.distance.data(), wordBytes);
+    std::memcpy(transfer.mapped() + wordBytes, target.surface.data(), radianceBytes);
+    std::memcpy(transfer.mapped() + wordBytes + radianceBytes, direct.data(), radianceBytes);
+    if (emitters) std::memcpy(transfer.mapped() + wordBytes + 2 * radianceBytes, target.emitted.data(), radianceBytes);
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            const VkBufferCopy toWords{0, 0, wordBytes};
+            const VkBufferCopy toLight[] = {{wordBytes, radianceBytes, radianceBytes},
+                                            {wordBytes + radianceBytes, 3 * radianceBytes, radianceBytes},
+                                            {wordBytes + 2 * radianceBytes, 2 * radianceBytes, radianceBytes}};
+            gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), words.handle(), 1, &toWords);
+            gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), emitters ? 3 : 2, toLight);
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
+                          VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
+                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+            const VkDescriptorSet sets[] = {field.descriptorSet()};
+            dispatch(cmd, bouncePass, sets, pushFor(centre), info.faceSize, octahedral ? 1 : 6);
+            scanBuffer(gpu, cmd, "bake bounce", light, {.kind = gpu::kScanRadiance, .count = radianceWords});
+            recordGather(cmd, false);
+            copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
+            copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                          VK_ACCESS_2_HOST_READ_BIT);
+        });
+    if (!status) return status;
+    std::memcpy(target.radiance.data(), transfer.mapped(), radianceBytes);
+    std::vector<uint32_t> fresh(kIrradianceWordsPerProbe);
+    std::memcpy(fresh.data(), transfer.mapped() + radianceBytes, kIrradianceWordsPerProbe * 4);
+    for (uint32_t i = 0; i < kIrradianceWordsPerProbe; i += 2) target.irradiance[i] = fresh[i]; // the odd words are the moments
+    return success();
+}
+
+} // namespace sconce

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "runtime/field/light_field.h"
+#include "runtime/scene/device_scene.h"
+
+namespace sconce
+{
+
+/// Where one probe's maps go: pieces of the arrays of a FieldData and of what the bounces need besides.
+inline constexpr float kProbeNear = 1e-4f; // share of the diagonal: the near plane of a probe's faces, nothing nearer is drawn
+
+struct ProbeTarget
+{
+    std::span<uint32_t> distance;
+    std::span<uint32_t> radiance;
+    std::span<uint32_t> surface;    // reflectance 5:6:5 | shading normal << 16, a word a radiance texel; 0: sky
+    std::span<uint32_t> emitted;    // R11G11B10F a radiance texel; empty when the scene has no emitters
+    std::span<uint32_t> irradiance; // [kIrradianceSize^2][2]
+    std::span<uint32_t> faces;      // octahedral chart: level 0 words of the cube faces it was resampled from; else empty
+};
+
+/// The GPU's part of a bake, one probe at a time: each call submits one command buffer and waits.
+class ProbeBaker
+{
+public:
+    /// @param faceSize  texels a side of the rasterised faces, and of the octahedral map when that is the chart
+    static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info);
+
+    /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
+    Status bakeDirect(vec3 centre, const ProbeTarget& target);
+    /// Radiance = direct + what the surfaces reflect of the field's irradiance; then the probe's irradiance of that, moments untouched.
+    /// @param direct  the probe's radiance after bakeDirect
+    Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target);
+
+private:
+    struct Push // as shaders/bake_probe.glsl
+    {
+        VkDeviceAddress words, radiance, surface, extra;
+        vec3 centre;
+        float nearPlane;
+        uint32_t size, faceWords, chart, level;
+        vec3 sky;
+        float skyDistance;
+        VkDeviceAddress emitted;
+    };
+    static_assert(sizeof(Push) == 88);
+
+    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo)
+        : gpu(device), scene(deviceScene), info(fieldInfo)
+    {
+    }
+    Status createPipelines();
+    Status createBuffers();
+    void recordFaces(VkCommandBuffer cmd, vec3 centre);
+    void recordMaps(VkCommandBuffer cmd, vec3 centre);
+    void recordGather(VkCommandBuffer cmd, bool moments);
+    void dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const Push& push, uint32_t width,
+                  uint32_t layers);
+    void copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from);
+    Push pushFor(vec3 centre) const;
+
+    Gpu& gpu;
+    const DeviceScene& scene;
+    const gpu::LightFieldInfo info;
+    bool octahedral = false;
+    bool emitters = false;      // whether emission is kept a texel
+    uint32_t radianceWords = 0; // of the chart
+    GpuImage surfaceImage, depthImage;
+    DescriptorSet images;
+    Pipeline opaque, masked, surfacePass, chainPass, octahedralPass, lowPass, bouncePass;
+    std::array<Pipeline, 2> downsample, gather; // radiance, moments
+    Buffer faceWords, faceLight;                // octahedral only: the faces' words, and their radiance, surfaces and emission
+    Buffer words, light;                        // of the chart: distance words; radiance, surfaces, emission, then direct radiance
+    Buffer cells, irradiance;
+    Buffer transfer; // mapped
+    SceneDraws draws;
+};
+
+} // namespace sconce

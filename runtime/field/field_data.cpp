@@ -1,0 +1,59 @@
+#include "runtime/field/field_data.h"
+
+#include <cassert>
+
+#include "runtime/field/face_chain_text.h"
+
+namespace sconce
+{
+
+FieldBytes bytesByPart(const FieldData& field)
+{
+    FieldBytes bytes;
+    const size_t distanceBytes = field.distance.size() * sizeof(uint32_t);
+    if (field.info.chart == gpu::kChartOctahedral)
+    {
+        // The upper 16 bits of every full-resolution word are the normal; the low-resolution words are all distance.
+        bytes.normals = size_t(field.info.probeCount) * field.info.faceSize * field.info.faceSize * sizeof(uint16_t);
+    }
+    bytes.distance = distanceBytes - bytes.normals;
+    bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
+    bytes.radiance = field.radiance.size() * sizeof(uint32_t) + bytes.prefiltered;
+    bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t);
+    bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
+    return bytes;
+}
+
+uint32_t coarsestLevel(uint32_t faceSize)
+{
+    assert(faceSize > 0);
+    return uint32_t(chain_text::Text().chainTop(faceSize));
+}
+
+uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size)
+{
+    if (chart == gpu::kChartOctahedral) return size * size + (size / gpu::kLowFactor) * (size / gpu::kLowFactor);
+    chain_text::Text text;
+    return 6 * text.chainWords(size, text.chainTop(size));
+}
+
+uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size)
+{
+    return (chart == gpu::kChartOctahedral ? 1u : 6u) * size * size;
+}
+
+uint32_t chartSize(uint32_t chart, uint32_t resolution)
+{
+    return chart == gpu::kChartCube ? resolution / 2 : resolution;
+}
+
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution)
+{
+    const uint32_t size = chartSize(chart, resolution);
+    const size_t words =
+        size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
+    const size_t patches = chart == gpu::kChartCube ? size_t(2) * gpu::kPatches : 0;
+    return (words + patches) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+}
+
+} // namespace sconce

@@ -1,0 +1,224 @@
+#include "runtime/field/light_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstring>
+
+#include "runtime/vulkan/nan_scan.h"
+
+#include "spirv/trace_rays_comp.h"
+
+namespace sconce
+{
+namespace
+{
+
+struct FieldBlock // as shaders/light_field.glsl declares it
+{
+    gpu::LightFieldInfo info;
+    gpu::TraceQuality quality;
+    VkDeviceAddress distance;
+    VkDeviceAddress radiance;
+    VkDeviceAddress irradiance;
+    VkDeviceAddress prefiltered;
+};
+static_assert(sizeof(FieldBlock) == 256);
+
+std::string checkQuality(const gpu::TraceQuality& q)
+{
+    auto wrong = [](const char* name, auto value, const char* range)
+    { return std::string("quality: ") + name + " " + std::to_string(value) + " is outside " + range; };
+    if (q.ranked < 1 || q.ranked > gpu::kRanked) return wrong("ranked", q.ranked, "1..4");
+    if (q.maxHandoffs < 0 || q.maxHandoffs > 64) return wrong("maxHandoffs", q.maxHandoffs, "0..64");
+    if (q.startLevel < 0 || q.startLevel > 6 || q.startLevel % 2) return wrong("startLevel", q.startLevel, "0, 2, 4, 6");
+    if (q.coarsestLevel < 0 || q.coarsestLevel > 6 || q.coarsestLevel % 2) return wrong("coarsestLevel", q.coarsestLevel, "0, 2, 4, 6");
+    if (!(q.tolerance >= 0.25f && q.tolerance <= 4.0f)) return wrong("tolerance", q.tolerance, "0.25..4");
+    if (!(q.epsilon >= 0.0f && q.epsilon <= 1e-2f)) return wrong("epsilon", q.epsilon, "0..0.01");
+    if (!(q.opinion >= 0.0f && q.opinion <= 1.0f)) return wrong("opinion", q.opinion, "0..1");
+    if (q.farBounds != 0 && q.farBounds != 1) return wrong("farBounds", q.farBounds, "0, 1");
+    return {};
+}
+
+Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
+{
+    const glm::uvec3 size = octree.textureSize();
+    if (std::max({size.x, size.y, size.z}) > gpu.properties.limits.maxImageDimension3D)
+        return Error{ErrorCode::missingFeature, "the octree needs a 3D texture of " + std::to_string(std::max({size.x, size.y, size.z})) +
+                                                    " texels a side and the device allows " +
+                                                    std::to_string(gpu.properties.limits.maxImageDimension3D) +
+                                                    "; build it with fewer voxels"};
+    const bool narrow = octree.marker == 255;
+    ImageDesc desc;
+    desc.format = narrow ? VK_FORMAT_R8G8B8A8_UINT : VK_FORMAT_R16G16B16A16_UINT;
+    desc.width = size.x;
+    desc.height = size.y;
+    desc.depth = size.z;
+    desc.volume = true;
+    desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    auto image = gpu.makeImage(desc, "octree");
+    if (!image) return image.error();
+    std::vector<uint8_t> bytes(octree.bytes());
+    if (narrow)
+        std::transform(octree.texels.begin(), octree.texels.end(), bytes.begin(), [](uint16_t v) { return uint8_t(v); });
+    else
+        std::memcpy(bytes.data(), octree.texels.data(), bytes.size());
+    auto staging = gpu.makeBufferWith<uint8_t>(bytes, 0, "octree staging");
+    if (!staging) return staging.error();
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            transition(gpu, cmd, *image,
+                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
+                        VK_PIPELINE_STAGE_2_COPY_BIT, 0, VK_ACCESS_2_TRANSFER_WRITE_BIT});
+            VkBufferImageCopy copy{};
+            copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            copy.imageExtent = {size.x, size.y, size.z};
+            gpu.vk.CmdCopyBufferToImage(cmd, staging->handle(), image->handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+            transition(gpu, cmd, *image,
+                       {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+        });
+    if (!status) return status.error();
+    return image;
+}
+
+} // namespace
+
+Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Quality& quality)
+{
+    if (field.probes.empty()) return Error{ErrorCode::badArgument, "the light field has no probes; bake one with at least one probe"};
+    LightField made;
+    made.gpu = &gpu;
+    made.fieldInfo = field.info;
+    struct Part
+    {
+        Buffer& buffer;
+        std::span<const uint32_t> words;
+        const char* what;
+    };
+    for (const Part& part :
+         {Part{made.distance, field.distance, "probe distances"}, Part{made.radiance, field.radiance, "probe radiance"},
+          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"}})
+    {
+        if (part.words.empty()) continue;
+        auto buffer = gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
+        if (!buffer) return buffer.error();
+        part.buffer = std::move(*buffer);
+        made.bytes += part.buffer.size();
+    }
+    made.radianceHeld = !field.radiance.empty();
+    auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, VK_FORMAT_R32G32B32A32_SFLOAT, "probe headers");
+    if (!probes) return probes.error();
+    made.probes = std::move(*probes);
+    made.patchesHeld = !field.patches.empty();
+    const std::vector<uint32_t> noPatches(4); // the binding still wants a buffer
+    auto patches =
+        gpu.makeTexelBuffer<uint32_t>(made.patchesHeld ? field.patches : noPatches, VK_FORMAT_R32G32B32A32_UINT, "probe patches");
+    if (!patches) return patches.error();
+    made.patches = std::move(*patches);
+    auto block = gpu.makeBuffer(sizeof(FieldBlock), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "light field block");
+    if (!block) return block.error();
+    made.block = std::move(*block);
+    Octree empty; // a field of the octahedral baseline has none; the binding still wants an image
+    empty.bricks = glm::uvec3(1);
+    empty.texels.assign(4 * 8, 0);
+    auto octree = uploadOctree(gpu, field.octree.texels.empty() ? empty : field.octree);
+    if (!octree) return octree.error();
+    made.octree = std::move(*octree);
+    made.bytes += made.probes.size() + made.patches.size() + made.block.size() + field.octree.bytes();
+
+    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                                               {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                               {3, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+    auto set = DescriptorSet::create(gpu, bindings);
+    if (!set) return set.error();
+    made.set = std::move(*set);
+    made.set.write(0, made.block);
+    made.set.write(1, made.probes);
+    made.set.write(3, made.patches);
+    made.set.write(2, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    if (auto status = made.setQuality(quality); !status) return status.error();
+    return made;
+}
+
+Status LightField::setQuality(const Quality& quality)
+{
+    if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
+    readsFarBounds = quality.trace.farBounds != 0;
+    const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
+    return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
+}
+
+std::array<uint32_t, 2> LightField::constants() const
+{
+    return {(readsFarBounds ? 1u : 0u) | (fieldInfo.chart == gpu::kChartOctahedral ? 2u : 0u), radianceHeld ? 1u : 0u};
+}
+
+Result<RayTracer> RayTracer::create(Gpu& gpu, const LightField& field, Spirv shader)
+{
+    RayTracer made;
+    made.gpu = &gpu;
+    made.field = &field;
+    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto set = DescriptorSet::create(gpu, bindings);
+    if (!set) return set.error();
+    made.set = std::move(*set);
+    const VkDescriptorSetLayout layouts[] = {field.layout(), made.set.layout()};
+    const auto constants = field.constants();
+    auto pipeline = Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(uint32_t), constants);
+    if (!pipeline) return pipeline.error();
+    made.pipeline = std::move(*pipeline);
+    return made;
+}
+
+void RayTracer::record(VkCommandBuffer cmd, const Buffer& rays, const Buffer& hits, uint32_t count)
+{
+    set.write(0, rays);
+    set.write(1, hits);
+    const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
+    pipeline.bind(cmd, sets);
+    pipeline.push(cmd, count);
+    gpu->vk.CmdDispatch(cmd, (count + 63) / 64, 1, 1);
+    static_assert(sizeof(gpu::RayHit) == 64);
+    constexpr uint32_t words = sizeof(gpu::RayHit) / 4, floats = 0x87feu; // t, position, normal, radiance, confidence
+    scanBuffer(*gpu, cmd, "trace rays", hits, {.count = VkDeviceSize(count) * words, .stride = words, .mask = floats});
+    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
+}
+
+Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds)
+{
+    assert(rays.size() == hits.size());
+    constexpr size_t kPiece = size_t(1) << 18;
+    const size_t piece = std::min(rays.size(), kPiece);
+    if (milliseconds) *milliseconds = 0.0;
+    if (piece == 0) return success();
+    auto rayBuffer = gpu->makeBuffer(piece * sizeof(gpu::Ray), 0, MemoryUse::device, "rays");
+    if (!rayBuffer) return rayBuffer.error();
+    auto hitBuffer = gpu->makeBuffer(piece * sizeof(gpu::RayHit), 0, MemoryUse::device, "ray hits");
+    if (!hitBuffer) return hitBuffer.error();
+    auto timer = GpuTimer::create(*gpu, 1);
+    if (!timer) return timer.error();
+    for (size_t first = 0; first < rays.size(); first += piece)
+    {
+        const size_t count = std::min(piece, rays.size() - first);
+        if (auto status = gpu->upload(*rayBuffer, 0, std::as_bytes(rays.subspan(first, count))); !status) return status;
+        auto status = gpu->submit(
+            [&](VkCommandBuffer cmd)
+            {
+                timer->reset(cmd);
+                timer->begin(cmd, "trace");
+                record(cmd, *rayBuffer, *hitBuffer, uint32_t(count));
+                timer->end(cmd);
+            });
+        if (!status) return status;
+        if (milliseconds)
+            for (const GpuTimer::Scope& scope : timer->read()) *milliseconds += scope.milliseconds;
+        if (auto copied = gpu->download(*hitBuffer, 0, std::as_writable_bytes(hits.subspan(first, count))); !copied) return copied;
+    }
+    return success();
+}
+
+} // namespace sconce

@@ -1,0 +1,633 @@
+#include "runtime/field/light_field_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include <nlohmann/json.hpp>
+#include <zstd.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/limits.h"
+#include "base/numbers.h"
+#include "base/safe_file.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+static_assert(std::endian::native == std::endian::little, "the file is little-endian and is copied as it is");
+
+using Bytes = std::vector<std::byte>;
+
+constexpr char kMagic[8] = {'\x89', 'S', 'C', 'O', 'N', 'C', 'E', '\n'}; // not text, and a transfer that rewrites line ends damages it
+constexpr char kEnd[8] = {'S', 'C', 'O', 'N', 'C', 'E', '.', '\n'};
+constexpr uint64_t kChunkBytes = 16u << 20;    // a section is cut into blocks of at most this many bytes
+constexpr uint64_t kZstdMaxRatio = 128u << 10; // a zstd block of 4 bytes stands for at most 128 KiB; more is no real file
+constexpr int kZstdLevel = 3;
+constexpr uint32_t kMaxBlocks = 1u << 20;
+
+/// The header's layout and place are the same in every version, so that a newer file can be told from a damaged one.
+struct Header
+{
+    char magic[8];
+    uint32_t version;
+    uint32_t blocks;
+    uint64_t fileBytes;
+    uint64_t tableChecksum;
+    uint64_t headerChecksum; // of the bytes before it
+};
+static_assert(sizeof(Header) == 40);
+
+enum class Codec : uint32_t
+{
+    raw = 0,
+    zstd = 1
+};
+
+struct Block
+{
+    uint32_t section; // Section
+    uint32_t chunk;   // 0, 1, ... within the section
+    Codec codec;
+    uint32_t reserved; // 0
+    uint64_t offset;   // from the start of the file; blocks lie one after another without gaps
+    uint64_t storedBytes;
+    uint64_t rawBytes;
+    uint64_t checksum; // XXH3-64 of the stored bytes
+};
+static_assert(sizeof(Block) == 48);
+
+struct Footer
+{
+    uint64_t headerChecksum; // the header's again: a file cut short and padded is noticed
+    char end[8];
+};
+
+/// Sections in the order in which they are written.
+enum Section : uint32_t
+{
+    meta,
+    info,
+    probes,
+    distance,
+    radiance,
+    irradiance,
+    octree,
+    octreeTexels,
+    prefiltered, // since version 3
+    patches,     // since version 4
+    sectionCount
+};
+constexpr const char* kSectionNames[sectionCount] = {"meta",       "info",   "probes",        "distance",    "radiance",
+                                                     "irradiance", "octree", "octree texels", "prefiltered", "patches"};
+
+/// The scalar part of an Octree.
+struct OctreeHeader
+{
+    float boundsLow[3], boundsHigh[3], voxel;
+    int32_t topCells[3], topShift;
+    uint32_t bricks[3], marker, leaves, nodes;
+};
+static_assert(sizeof(OctreeHeader) == 68);
+
+uint64_t checksum(std::span<const std::byte> bytes)
+{
+    return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+template <class T> std::span<const std::byte> bytesOf(const T& value)
+{
+    static_assert(std::is_trivially_copyable_v<T>);
+    return std::as_bytes(std::span(&value, 1));
+}
+
+std::string blockName(const Block& block)
+{
+    const std::string name =
+        block.section < sectionCount ? kSectionNames[block.section] : "unknown section " + std::to_string(block.section);
+    return block.section == meta || block.section == info || block.section == octree ? name : name + " " + std::to_string(block.chunk);
+}
+
+/// a * b * ..., or nothing on overflow.
+std::optional<uint64_t> product(std::initializer_list<uint64_t> factors)
+{
+    uint64_t result = 1;
+    for (uint64_t factor : factors)
+        if (__builtin_mul_overflow(result, factor, &result)) return {};
+    return result;
+}
+
+/// What is wrong with the sizes, as a sentence; empty when every array has the length that info and octree call for.
+std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, const uint64_t (&rawBytes)[sectionCount])
+{
+    if (i.chart != gpu::kChartCube && i.chart != gpu::kChartOctahedral) return "its chart " + std::to_string(i.chart) + " is unknown";
+    if (i.faceSize < 8 || i.faceSize > 4096 || i.faceSize % 4 != 0)
+        return "its map size " + std::to_string(i.faceSize) + " is not a multiple of 4 from 8 to 4096";
+    if (i.probeCount > kMostProbes) return "its probe count " + std::to_string(i.probeCount) + " is above " + std::to_string(kMostProbes);
+    if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize)) return "its words per probe disagree with its map size";
+    if (i.chart == gpu::kChartCube && i.topLevel != coarsestLevel(i.faceSize)) return "its coarsest level disagrees with its map size";
+    if (tree.marker != kMostProbesOf8Bits && tree.marker != kMostProbes)
+        return "its octree's marker " + std::to_string(tree.marker) + " is neither 255 nor 65535";
+    const uint64_t n = i.probeCount;
+    const std::optional<uint64_t> expected[sectionCount] = {
+        rawBytes[meta],
+        sizeof(gpu::LightFieldInfo),
+        n * sizeof(gpu::ProbeHeader),
+        product({n, i.wordsPerProbe, 4}),
+        product({n, radianceWordsPerProbe(i.chart, i.faceSize), 4}),
+        n * kIrradianceWordsPerProbe * sizeof(uint32_t),
+        sizeof(OctreeHeader),
+        product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
+        product({n, gpu::kPrefilteredWords, 4}),
+        product({n, gpu::kPatches, 8}),
+    };
+    for (uint32_t section = 0; section < sectionCount; ++section)
+    {
+        const bool optional =
+            section == radiance || section == prefiltered || section == patches; // what no surface of the scene calls for is left out
+        if (expected[section] != rawBytes[section] && !(optional && rawBytes[section] == 0))
+            return std::string("its section '") + kSectionNames[section] + "' has " + std::to_string(rawBytes[section]) +
+                   " bytes where its info calls for another size";
+    }
+    return {};
+}
+
+/// What is wrong with the octree; empty when every descent ends at a leaf inside the texture that names probes which are there.
+std::string octreeProblem(const FieldData& field)
+{
+    const gpu::LightFieldInfo& i = field.info;
+    const Octree& tree = field.octree;
+    if (glm::ivec3(i.topCells) != tree.topCells || i.topShift != tree.topShift || glm::uvec3(i.bricks) != tree.bricks ||
+        i.marker != tree.marker || glm::vec3(i.boundsLow) != tree.boundsLow || i.voxel != tree.voxel)
+        return "its octree disagrees with its info";
+    if (!(tree.voxel > 0.0f) || !std::isfinite(tree.voxel)) return "its octree's voxel is not a positive number";
+    if (tree.topShift < 0 || tree.topShift > 15) return "its octree's depth " + std::to_string(tree.topShift) + " is not from 0 to 15";
+    uint64_t topBricks = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (tree.topCells[axis] < 1 || tree.topCells[axis] > 65535 || (int64_t(tree.topCells[axis]) << tree.topShift) > (1 << 24))
+            return "its octree's top grid has an impossible size";
+        topBricks *= uint64_t(tree.topCells[axis] + 1) / 2;
+    }
+    const uint64_t bricks = uint64_t(tree.bricks.x) * tree.bricks.y * tree.bricks.z;
+    if (topBricks > bricks) return "its octree's top grid is larger than its texture";
+
+    // Every brick at every level it is reached at, each once, so that a cycle ends the walk and not the program.
+    std::vector<uint16_t> seenAt(bricks, 0);
+    std::vector<std::pair<uint32_t, int>> queue;
+    const auto reach = [&](uint64_t brick, int level)
+    {
+        if ((seenAt[brick] >> level & 1) != 0) return;
+        seenAt[brick] = uint16_t(seenAt[brick] | 1u << level);
+        queue.emplace_back(uint32_t(brick), level);
+    };
+    for (uint64_t brick = 0; brick < topBricks; ++brick) reach(brick, tree.topShift);
+    while (!queue.empty())
+    {
+        const auto [brick, level] = queue.back();
+        queue.pop_back();
+        const glm::uvec3 corner =
+            2u * glm::uvec3(brick % tree.bricks.x, brick / tree.bricks.x % tree.bricks.y, brick / tree.bricks.x / tree.bricks.y);
+        for (uint32_t child = 0; child < 8; ++child)
+        {
+            const glm::uvec3 at = corner + glm::uvec3(child & 1, child >> 1 & 1, child >> 2);
+            const uint16_t* t = &tree.texels[4 * (at.x + 2ull * tree.bricks.x * (at.y + 2ull * tree.bricks.y * at.z))];
+            if (t[3] == tree.marker)
+            {
+                const uint64_t next = tree.marker == 255 ? t[0] + 256ull * t[1] + 65536ull * t[2] : t[0] + 65536ull * t[1];
+                if (level == 0) return "octree brick " + std::to_string(brick) + " goes on below the finest voxels";
+                if (next >= bricks) return "octree brick " + std::to_string(brick) + " points outside its texture";
+                reach(next, level - 1);
+            }
+            else if (std::max({t[0], t[1], t[2], t[3]}) >= field.probes.size())
+                return "octree brick " + std::to_string(brick) + " names a probe that is not there";
+        }
+    }
+    return {};
+}
+
+/// What is wrong with the values that addressing relies on; empty when all is well.
+std::string contentProblem(const FieldData& field)
+{
+    const gpu::LightFieldInfo& i = field.info;
+    if (!finite(i.origin) || !(i.scale > 0.0f) || !std::isfinite(i.scale) || !finite(i.boundsLow) || !finite(i.boundsHigh) ||
+        !finite(i.sky))
+        return "its info holds a number that is not finite";
+    for (size_t p = 0; p < field.probes.size(); ++p)
+        if (!finite(field.probes[p].centre)) return "the centre of probe " + std::to_string(p) + " is not finite";
+    if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
+        return "its scene bounds are not finite";
+    const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
+    if (field.octree.texels.empty()) return grid || field.probes.empty() ? "" : "it has neither an octree nor a grid to find its probes by";
+    return octreeProblem(field);
+}
+
+OctreeHeader headerOf(const Octree& tree)
+{
+    OctreeHeader h{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        h.boundsLow[axis] = tree.boundsLow[axis];
+        h.boundsHigh[axis] = tree.boundsHigh[axis];
+        h.topCells[axis] = tree.topCells[axis];
+        h.bricks[axis] = tree.bricks[axis];
+    }
+    h.voxel = tree.voxel;
+    h.topShift = tree.topShift;
+    h.marker = tree.marker;
+    h.leaves = tree.leaves;
+    h.nodes = tree.nodes;
+    return h;
+}
+
+void applyHeader(const OctreeHeader& h, Octree& tree)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        tree.boundsLow[axis] = h.boundsLow[axis];
+        tree.boundsHigh[axis] = h.boundsHigh[axis];
+        tree.topCells[axis] = h.topCells[axis];
+        tree.bricks[axis] = h.bricks[axis];
+    }
+    tree.voxel = h.voxel;
+    tree.topShift = h.topShift;
+    tree.marker = h.marker;
+    tree.leaves = h.leaves;
+    tree.nodes = h.nodes;
+}
+
+std::string metaText(const FieldData& field)
+{
+    nlohmann::ordered_json json;
+    json["scene"] = field.sceneName;
+    json["resolution"] = field.resolution;
+    json["bounces"] = field.bounces;
+    json["effects"] = field.effects;
+    json["probes"] = field.info.probeCount;
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// False when the text is not what metaText() writes.
+bool applyMeta(std::string_view text, FieldData& field)
+{
+    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_object()) return false;
+    const auto number = [&](const char* key, uint32_t& value)
+    {
+        const auto it = json.find(key);
+        if (it == json.end() || !it->is_number_unsigned()) return false;
+        value = uint32_t(std::min<uint64_t>(it->get<uint64_t>(), UINT32_MAX));
+        return true;
+    };
+    if (!number("resolution", field.resolution) || !number("bounces", field.bounces)) return false;
+    const auto scene = json.find("scene"), effects = json.find("effects");
+    if (scene == json.end() || !scene->is_string() || effects == json.end() || !effects->is_array()) return false;
+    field.sceneName = scene->get<std::string>();
+    for (const nlohmann::json& effect : *effects)
+    {
+        if (!effect.is_string()) return false;
+        field.effects.push_back(effect.get<std::string>());
+    }
+    return true;
+}
+
+/// An open file of known size.
+class Reader
+{
+public:
+    static Result<Reader> open(const std::filesystem::path& file)
+    {
+        Reader reader;
+        reader.name = file.string();
+        std::error_code error;
+        if (std::filesystem::is_directory(file, error)) return reader.failure("it is a folder");
+        reader.size = std::filesystem::file_size(file, error);
+        if (error) return reader.failure(error.message());
+        reader.stream.open(file, std::ios::binary);
+        if (!reader.stream) return reader.failure("it cannot be opened");
+        return reader;
+    }
+
+    Status read(uint64_t offset, std::span<std::byte> bytes)
+    {
+        stream.clear();
+        stream.seekg(std::streamoff(offset));
+        stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+        if (!stream) return failure("reading " + std::to_string(bytes.size()) + " bytes at offset " + std::to_string(offset) + " failed");
+        return success();
+    }
+
+    Error failure(const std::string& reason) const
+    {
+        return {ErrorCode::fileError, "Cannot read light field '" + name + "': " + reason + "."};
+    }
+    Error damage(const std::string& what) const
+    {
+        return {ErrorCode::badInput, "Light field '" + name + "' is damaged: " + what + ". Bake it again or restore it from a copy."};
+    }
+
+    std::string name;
+    uint64_t size = 0;
+
+private:
+    std::ifstream stream;
+};
+
+struct Table
+{
+    Header header{};
+    std::vector<Block> blocks;
+};
+
+/// What is wrong with the table's entries; empty when blocks lie gapless between table and footer, sections in order.
+std::string tableProblem(const Table& table, uint64_t fileBytes)
+{
+    uint64_t at = sizeof(Header) + table.blocks.size() * sizeof(Block);
+    uint32_t section = 0, chunk = 0;
+    for (const Block& block : table.blocks)
+    {
+        const std::string name = "block '" + blockName(block) + "'";
+        if (block.section >= sectionCount || block.section < section) return name + " is not where it belongs";
+        chunk = block.section == section ? chunk : 0;
+        section = block.section;
+        if (block.chunk != chunk++) return name + " is out of sequence";
+        if (block.offset != at || block.storedBytes > fileBytes - at) return name + " lies outside the file";
+        if (block.codec != Codec::raw && block.codec != Codec::zstd) return name + " has an unknown codec";
+        if (block.rawBytes > kChunkBytes || block.reserved != 0) return name + " has an impossible size";
+        if (block.codec == Codec::raw ? block.rawBytes != block.storedBytes : block.rawBytes / kZstdMaxRatio > block.storedBytes)
+            return name + " has sizes that contradict each other";
+        at += block.storedBytes;
+    }
+    return at + sizeof(Footer) == fileBytes ? "" : "its blocks do not end where the file ends";
+}
+
+/// Header, table and footer, in that order; every finding goes to the report as a row (a sound one too).
+Result<Table> readTable(Reader& reader, VerifyReport& report)
+{
+    report.fileBytes = reader.size;
+    Table table;
+    const auto row = [&](const char* name, uint64_t offset, uint64_t bytes, std::string problem) {
+        report.blocks.push_back({name, offset, bytes, bytes, std::move(problem)});
+    };
+    const auto damaged = [&](const char* name, uint64_t offset, uint64_t bytes, const std::string& problem)
+    {
+        row(name, offset, bytes, problem);
+        return reader.damage(problem);
+    };
+
+    if (reader.size < sizeof(Header))
+        return damaged("header", 0, reader.size, "it has " + std::to_string(reader.size) + " bytes, fewer than a header");
+    if (Status status = reader.read(0, std::as_writable_bytes(std::span(&table.header, 1))); !status) return status.error();
+    const Header& header = table.header;
+    if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0)
+        return damaged("header", 0, sizeof(Header), "it does not begin as a .sconce file does");
+    if (header.headerChecksum != checksum(bytesOf(header).first(offsetof(Header, headerChecksum))))
+        return damaged("header", 0, sizeof(Header), "its header does not match its checksum");
+    report.version = header.version;
+    if (header.version < kOldestFieldFileVersion || header.version > kFieldFileVersion)
+    {
+        row("header", 0, sizeof(Header), "format version " + std::to_string(header.version));
+        return Error{ErrorCode::badInput,
+                     "Light field '" + reader.name + "' has format version " + std::to_string(header.version) +
+                         "; this program reads versions " + std::to_string(kOldestFieldFileVersion) + " to " +
+                         std::to_string(kFieldFileVersion) +
+                         (header.version > kFieldFileVersion ? ". Use a newer Sconce, or bake it again." : ". Bake it again.")};
+    }
+    if (header.fileBytes != reader.size)
+        return damaged("header", 0, sizeof(Header),
+                       "it has " + std::to_string(reader.size) + " bytes instead of " + std::to_string(header.fileBytes) +
+                           "; it was cut short or added to");
+    row("header", 0, sizeof(Header), "");
+
+    const uint64_t tableBytes = uint64_t(header.blocks) * sizeof(Block);
+    if (header.blocks > kMaxBlocks || tableBytes > reader.size - sizeof(Header))
+        return damaged("table", sizeof(Header), tableBytes, "its block table is larger than the file");
+    table.blocks.resize(header.blocks);
+    if (Status status = reader.read(sizeof(Header), std::as_writable_bytes(std::span(table.blocks))); !status) return status.error();
+    if (checksum(std::as_bytes(std::span(table.blocks))) != header.tableChecksum)
+        return damaged("table", sizeof(Header), tableBytes, "its block table does not match its checksum");
+    if (const std::string problem = tableProblem(table, reader.size); !problem.empty())
+        return damaged("table", sizeof(Header), tableBytes, problem);
+    row("table", sizeof(Header), tableBytes, "");
+
+    Footer footer{};
+    const uint64_t footerOffset = reader.size - sizeof(Footer);
+    if (Status status = reader.read(footerOffset, std::as_writable_bytes(std::span(&footer, 1))); !status) return status.error();
+    if (footer.headerChecksum != header.headerChecksum || std::memcmp(footer.end, kEnd, sizeof(kEnd)) != 0)
+        return damaged("footer", footerOffset, sizeof(Footer), "its footer is not the one its header calls for");
+    row("footer", footerOffset, sizeof(Footer), "");
+    return table;
+}
+
+/// Reads a block, checks it and decodes it into `raw`, which has block.rawBytes bytes.
+Status readBlock(Reader& reader, const Block& block, Bytes& stored, std::span<std::byte> raw)
+{
+    stored.resize(block.storedBytes);
+    if (Status status = reader.read(block.offset, stored); !status) return status;
+    if (checksum(stored) != block.checksum) return reader.damage("block '" + blockName(block) + "' does not match its checksum");
+    if (block.codec == Codec::raw)
+    {
+        std::ranges::copy(stored, raw.begin());
+        return success();
+    }
+    const size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
+    if (ZSTD_isError(size) || size != raw.size()) return reader.damage("block '" + blockName(block) + "' cannot be decompressed");
+    return success();
+}
+
+/// Appends the section in blocks, and each block's entry to the table.
+Status appendSection(SafeFile& file, Section section, std::span<const std::byte> raw, uint64_t& offset, std::vector<Block>& blocks)
+{
+    Bytes packed(ZSTD_compressBound(std::min<uint64_t>(raw.size(), kChunkBytes)));
+    uint32_t chunk = 0;
+    do
+    {
+        const std::span<const std::byte> piece = raw.first(std::min<uint64_t>(raw.size(), kChunkBytes));
+        raw = raw.subspan(piece.size());
+        const size_t size = ZSTD_compress(packed.data(), packed.size(), piece.data(), piece.size(), kZstdLevel);
+        const bool smaller = !ZSTD_isError(size) && size < piece.size();
+        const std::span<const std::byte> stored = smaller ? std::span<const std::byte>(packed).first(size) : piece;
+        blocks.push_back({section, chunk++, smaller ? Codec::zstd : Codec::raw, 0, offset, stored.size(), piece.size(), checksum(stored)});
+        offset += stored.size();
+        if (Status status = file.append(stored); !status) return status;
+    } while (!raw.empty());
+    return success();
+}
+
+Status saveChecked(const FieldData& field, const std::filesystem::path& path)
+{
+    const OctreeHeader treeHeader = headerOf(field.octree);
+    const std::string text = metaText(field);
+    const std::span<const std::byte> sections[sectionCount] = {
+        std::as_bytes(std::span(text)),
+        bytesOf(field.info),
+        std::as_bytes(std::span(field.probes)),
+        std::as_bytes(std::span(field.distance)),
+        std::as_bytes(std::span(field.radiance)),
+        std::as_bytes(std::span(field.irradiance)),
+        bytesOf(treeHeader),
+        std::as_bytes(std::span(field.octree.texels)),
+        std::as_bytes(std::span(field.prefiltered)),
+        std::as_bytes(std::span(field.patches)),
+    };
+    uint64_t rawBytes[sectionCount], blockCount = 0;
+    for (uint32_t section = 0; section < sectionCount; ++section)
+    {
+        rawBytes[section] = sections[section].size();
+        blockCount += std::max<uint64_t>(1, (rawBytes[section] + kChunkBytes - 1) / kChunkBytes);
+    }
+    std::string problem = sizeProblem(field.info, treeHeader, rawBytes);
+    if (problem.empty()) problem = contentProblem(field);
+    if (!problem.empty()) return Error{ErrorCode::badArgument, "The light field cannot be written: " + problem + "."};
+
+    Result<SafeFile> file = SafeFile::create(path);
+    if (!file) return file.error();
+    uint64_t offset = sizeof(Header) + blockCount * sizeof(Block);
+    if (Status status = file->append(Bytes(offset)); !status) return status;
+    std::vector<Block> blocks;
+    for (uint32_t section = 0; section < sectionCount; ++section)
+        if (Status status = appendSection(*file, Section(section), sections[section], offset, blocks); !status) return status;
+
+    Header header{{}, kFieldFileVersion, uint32_t(blocks.size()), offset + sizeof(Footer), checksum(std::as_bytes(std::span(blocks))), 0};
+    std::memcpy(header.magic, kMagic, sizeof(kMagic));
+    header.headerChecksum = checksum(bytesOf(header).first(offsetof(Header, headerChecksum)));
+    Footer footer{header.headerChecksum, {}};
+    std::memcpy(footer.end, kEnd, sizeof(kEnd));
+    if (Status status = file->append(bytesOf(footer)); !status) return status;
+    if (Status status = file->overwrite(sizeof(Header), std::as_bytes(std::span(blocks))); !status) return status;
+    if (Status status = file->overwrite(0, bytesOf(header)); !status) return status;
+    return file->commit();
+}
+
+Result<FieldData> loadChecked(const std::filesystem::path& path)
+{
+    Result<Reader> reader = Reader::open(path);
+    if (!reader) return reader.error();
+    VerifyReport rows;
+    Result<Table> table = readTable(*reader, rows);
+    if (!table) return table.error();
+
+    uint64_t rawBytes[sectionCount] = {};
+    for (const Block& block : table->blocks) rawBytes[block.section] += block.rawBytes;
+    FieldData field;
+    field.fileVersion = table->header.version;
+    OctreeHeader treeHeader{};
+    std::string text;
+    Bytes stored;
+    const auto readInto = [&](Section section, std::span<std::byte> raw) -> Status
+    {
+        if (rawBytes[section] != raw.size())
+            return reader->damage(std::string("its section '") + kSectionNames[section] + "' has the wrong size");
+        for (const Block& block : table->blocks)
+        {
+            if (block.section != section) continue;
+            if (Status status = readBlock(*reader, block, stored, raw.first(block.rawBytes)); !status) return status;
+            raw = raw.subspan(block.rawBytes);
+        }
+        return success();
+    };
+    // The two small sections that say how large the others must be come first, so that nothing large is allocated for a lie.
+    if (Status status = readInto(info, std::as_writable_bytes(std::span(&field.info, 1))); !status) return status.error();
+    if (Status status = readInto(octree, std::as_writable_bytes(std::span(&treeHeader, 1))); !status) return status.error();
+    if (const std::string problem = sizeProblem(field.info, treeHeader, rawBytes); !problem.empty()) return reader->damage(problem);
+    applyHeader(treeHeader, field.octree);
+    text.resize(rawBytes[meta]);
+    field.probes.resize(rawBytes[probes] / sizeof(gpu::ProbeHeader));
+    field.distance.resize(rawBytes[distance] / sizeof(uint32_t));
+    field.radiance.resize(rawBytes[radiance] / sizeof(uint32_t));
+    field.irradiance.resize(rawBytes[irradiance] / sizeof(uint32_t));
+    field.octree.texels.resize(rawBytes[octreeTexels] / sizeof(uint16_t));
+    field.prefiltered.resize(rawBytes[prefiltered] / sizeof(uint32_t));
+    field.patches.resize(rawBytes[patches] / sizeof(uint32_t));
+    const std::pair<Section, std::span<std::byte>> parts[] = {
+        {meta, std::as_writable_bytes(std::span(text))},
+        {probes, std::as_writable_bytes(std::span(field.probes))},
+        {distance, std::as_writable_bytes(std::span(field.distance))},
+        {radiance, std::as_writable_bytes(std::span(field.radiance))},
+        {irradiance, std::as_writable_bytes(std::span(field.irradiance))},
+        {octreeTexels, std::as_writable_bytes(std::span(field.octree.texels))},
+        {prefiltered, std::as_writable_bytes(std::span(field.prefiltered))},
+        {patches, std::as_writable_bytes(std::span(field.patches))},
+    };
+    for (const auto& [section, raw] : parts)
+        if (Status status = readInto(section, raw); !status) return status.error();
+    if (!applyMeta(text, field)) return reader->damage("block 'meta' is not the JSON text it should be");
+    if (const std::string problem = contentProblem(field); !problem.empty()) return reader->damage(problem);
+    return field;
+}
+
+Result<VerifyReport> verifyChecked(const std::filesystem::path& path)
+{
+    Result<Reader> reader = Reader::open(path);
+    if (!reader) return reader.error();
+    VerifyReport report;
+    Result<Table> table = readTable(*reader, report);
+    if (!table)
+    {
+        if (table.error().code == ErrorCode::fileError) return table.error();
+        return report;
+    }
+    const BlockReport footer = report.blocks.back();
+    report.blocks.pop_back();
+    Bytes stored, raw;
+    for (const Block& block : table->blocks)
+    {
+        raw.resize(block.rawBytes);
+        const Status status = readBlock(*reader, block, stored, raw);
+        if (!status && status.error().code == ErrorCode::fileError) return status.error();
+        report.blocks.push_back(
+            {blockName(block), block.offset, block.storedBytes, block.rawBytes, status ? "" : "does not match its checksum"});
+    }
+    report.blocks.push_back(footer);
+    if (!report.ok()) return report;
+    if (const Result<FieldData> field = loadChecked(path); !field) report.problem = field.error().message;
+    return report;
+}
+
+/// Allocation is the one thing in here that can throw.
+template <class Function> auto guarded(const std::filesystem::path& path, Function&& function) -> decltype(function())
+{
+    try
+    {
+        return function();
+    }
+    catch (const std::bad_alloc&)
+    {
+        return Error{ErrorCode::outOfMemory,
+                     "Light field '" + path.string() + "' does not fit into memory; bake fewer probes or a lower resolution."};
+    }
+}
+
+} // namespace
+
+bool VerifyReport::ok() const
+{
+    return problem.empty() && std::ranges::all_of(blocks, [](const BlockReport& block) { return block.problem.empty(); });
+}
+
+Status saveField(const FieldData& field, const std::filesystem::path& file)
+{
+    return guarded(file, [&] { return saveChecked(field, file); });
+}
+
+Result<FieldData> loadField(const std::filesystem::path& file)
+{
+    return guarded(file, [&] { return loadChecked(file); });
+}
+
+Result<VerifyReport> verifyField(const std::filesystem::path& file)
+{
+    return guarded(file, [&] { return verifyChecked(file); });
+}
+
+} // namespace sconce

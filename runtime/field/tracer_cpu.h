@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+#include <glm/packing.hpp>
+
+#include "runtime/field/field_data.h"
+#include "shaders/shared/light_field.h"
+
+namespace sconce::twin
+{
+using namespace glm; // the shared text calls GLSL's functions by their plain names
+
+/// The shaders' own text, run on the CPU in float or double: the oracle of the GPU, and what tests and tools trace with.
+/// Refers to the field: keep that alive. Safe from many threads.
+template <class Real> struct LightFieldTwin
+{
+    using real = Real;
+    using uint = std::uint32_t;
+    using vec2 = glm::vec<2, Real>;
+    using vec3 = glm::vec<3, Real>;
+    using vec4 = glm::vec<4, Real>;
+    using vec2f = glm::vec2;
+    using vec3f = glm::vec3;
+    using RayHit = gpu::RayHit;
+    using ProbeHeader = gpu::ProbeHeader;
+    using TraceQuality = gpu::TraceQuality;
+    static constexpr uint kNoProbe = gpu::kNoProbe;
+    static constexpr uint kChartCube = gpu::kChartCube;
+    static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
+    static constexpr int kRanked = gpu::kRanked;
+    static constexpr int kPatchSide = gpu::kPatchSide;
+    static constexpr uint kPatches = gpu::kPatches;
+    static constexpr uint kPrefilteredSize = gpu::kPrefilteredSize;
+    static constexpr uint kPrefilteredWords = gpu::kPrefilteredWords;
+    static constexpr int kPrefilteredLevels = gpu::kPrefilteredLevels;
+
+    explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data)
+    {
+    }
+
+#include "shaders/shared/texel.h"
+
+#include "shaders/shared/chart.h"
+
+#include "shaders/shared/color.h"
+
+    const gpu::LightFieldInfo& field;
+    TraceQuality quality;
+    const FieldData& source;
+
+    bool readsFarBounds() const
+    {
+        return quality.farBounds != 0;
+    }
+    bool onOctahedron() const
+    {
+        return field.chart == gpu::kChartOctahedral;
+    }
+    bool holdsRadiance() const
+    {
+        return !source.radiance.empty();
+    }
+    const ProbeHeader& probeHeader(uint probe) const
+    {
+        return source.probes[probe];
+    }
+    uint distanceWord(uint index) const
+    {
+        return source.distance[index];
+    }
+    uint radianceWord(uint index) const
+    {
+        return source.radiance[index];
+    }
+    uint irradianceWord(uint index) const
+    {
+        return source.irradiance[index];
+    }
+    uvec4 patchWords(uint pair) const
+    {
+        const uint* words = source.patches.data() + 4 * pair;
+        return uvec4(words[0], words[1], words[2], words[3]);
+    }
+    uint prefilteredWord(uint index) const
+    {
+        return source.prefiltered[index];
+    }
+    uvec4 octreeTexel(ivec3 p) const
+    {
+        const glm::uvec3 size = source.octree.textureSize();
+        const size_t at = 4 * (size_t(p.x) + size.x * (size_t(p.y) + size_t(size.y) * p.z));
+        const uint16_t* texel = source.octree.texels.data() + at;
+        return {texel[0], texel[1], texel[2], texel[3]};
+    }
+
+#include "shaders/shared/octree_descent.h"
+
+#include "shaders/shared/face_chain.h"
+
+#include "shaders/shared/ray_state.h"
+
+#include "shaders/shared/face_march.h"
+
+#include "shaders/shared/probe_trace.h"
+
+#include "shaders/shared/prefiltered.h"
+
+#include "shaders/shared/light_lookup.h"
+
+#include "shaders/shared/ray_query.h"
+};
+
+} // namespace sconce::twin

@@ -1,0 +1,187 @@
+#include "runtime/frame/denoiser.h"
+
+#include "runtime/vulkan/nan_scan.h"
+
+#include "spirv/denoise_comp.h"
+#include "spirv/temporal_comp.h"
+
+namespace sconce
+{
+namespace
+{
+
+struct DenoisePush // as shaders/denoise.comp
+{
+    int stride;
+    int followRoughness;
+};
+constexpr int kStrides[] = {1, 2, 4, 8}; // pixels; an even number of steps ends where it began
+
+} // namespace
+
+Result<DescriptorSet> makeFrameSet(Gpu& gpu, const Buffer& frame, std::span<const DescriptorSet::Binding> passBindings)
+{
+    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {3, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+    bindings.insert(bindings.end(), passBindings.begin(), passBindings.end());
+    auto set = DescriptorSet::create(gpu, bindings);
+    if (set) set->write(3, frame);
+    return set;
+}
+
+Result<GpuImage> makeLightImage(Gpu& gpu, VkFormat format, uint32_t width, uint32_t height, const char* what)
+{
+    ImageDesc desc;
+    desc.format = format;
+    desc.width = width;
+    desc.height = height;
+    desc.usage =
+        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    auto image = gpu.makeImage(desc, what);
+    if (!image) return image.error();
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            transition(gpu, cmd, *image,
+                       {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_CLEAR_BIT, 0,
+                        VK_ACCESS_2_TRANSFER_WRITE_BIT});
+            const VkClearColorValue nothing{};
+            const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+            gpu.vk.CmdClearColorImage(cmd, image->handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                          VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+        });
+    if (!status) return status.error();
+    return image;
+}
+
+void writeInputs(DescriptorSet& set, const FrameInputs& inputs)
+{
+    set.write(0, inputs.depth, inputs.layout);
+    set.write(1, inputs.normalRoughness, inputs.layout);
+    set.write(2, inputs.baseColorMetallic, inputs.layout);
+}
+
+Result<DescriptorSet> Denoiser::makeStep(const Buffer& frame, const GpuImage& from, const GpuImage& to)
+{
+    const DescriptorSet::Binding bindings[] = {
+        {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto set = makeFrameSet(*gpu, frame, bindings);
+    if (!set) return set.error();
+    set->write(4, from.view(), VK_IMAGE_LAYOUT_GENERAL);
+    set->write(5, to.view(), VK_IMAGE_LAYOUT_GENERAL);
+    set->write(kTileBinding, desc.tiles->buffer());
+    return set;
+}
+
+Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const GpuImage& scratch)
+{
+    for (History& history : histories)
+    {
+        for (const auto& [image, format] :
+             {std::pair{&history.light, VK_FORMAT_R32G32B32A32_SFLOAT}, {&history.points, VK_FORMAT_R32G32_UINT}})
+        {
+            auto made = makeLightImage(*gpu, format, desc.width, desc.height, "the history of a filter over time");
+            if (!made) return made.error();
+            *image = std::move(*made);
+        }
+        auto first = makeStep(frame, history.light, scratch);
+        if (!first) return first.error();
+        history.first = std::move(*first);
+    }
+    for (uint32_t i = 0; i < 2; ++i)
+    {
+        const History &own = histories[i], &other = histories[1 - i];
+        const std::pair<uint32_t, const GpuImage*> images[] = {
+            {4, &light}, {5, &other.light}, {6, &other.points}, {7, &own.light}, {9, &own.points}};
+        std::vector<DescriptorSet::Binding> bindings = {{kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+        for (const auto& [binding, image] : images) bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+        auto set = makeFrameSet(*gpu, frame, bindings);
+        if (!set) return set.error();
+        for (const auto& [binding, image] : images) set->write(binding, image->view(), VK_IMAGE_LAYOUT_GENERAL);
+        set->write(kTileBinding, desc.tiles->buffer());
+        histories[i].blend = std::move(*set);
+    }
+    const VkDescriptorSetLayout layouts[] = {desc.firstSet, histories[0].blend.layout()};
+    const uint32_t constants[] = {desc.tiles->constant(), desc.term};
+    auto built = Pipeline::compute(*gpu, temporal_comp, layouts, 0, constants);
+    if (!built) return built.error();
+    temporal = std::move(*built);
+    return success();
+}
+
+Result<Denoiser> Denoiser::create(Gpu& gpu, const Desc& desc, const Buffer& frame, const GpuImage& light, const GpuImage& scratch)
+{
+    Denoiser made;
+    made.gpu = &gpu;
+    made.desc = desc;
+    for (bool forward : {true, false})
+    {
+        auto set = made.makeStep(frame, forward ? light : scratch, forward ? scratch : light);
+        if (!set) return set.error();
+        (forward ? made.forth : made.back) = std::move(*set);
+    }
+    if (desc.temporal)
+        if (auto status = made.makeHistory(frame, light, scratch); !status) return status.error();
+    const VkDescriptorSetLayout layouts[] = {desc.firstSet, made.forth.layout()};
+    const uint32_t constants[] = {desc.tiles->constant(), desc.term, desc.temporal ? 1u : 0u};
+    auto built = Pipeline::compute(gpu, denoise_comp, layouts, sizeof(DenoisePush), constants);
+    if (!built) return built.error();
+    made.pipeline = std::move(*built);
+    return made;
+}
+
+void Denoiser::setInputs(const FrameInputs& inputs)
+{
+    writeInputs(forth, inputs);
+    writeInputs(back, inputs);
+    if (!desc.temporal) return;
+    for (History& history : histories)
+    {
+        writeInputs(history.blend, inputs);
+        writeInputs(history.first, inputs);
+    }
+}
+
+void Denoiser::blend(VkCommandBuffer cmd, VkDescriptorSet firstSet)
+{
+    now = 1 - now;
+    const History& own = histories[now];
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    const VkClearColorValue nothing{};
+    const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, transfer,
+                  VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    gpu->vk.CmdClearColorImage(cmd, own.points.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all); // no pixel is of this frame yet
+    memoryBarrier(*gpu, cmd, transfer | compute, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    const VkDescriptorSet sets[] = {firstSet, own.blend.handle()};
+    temporal.bind(cmd, sets);
+    desc.tiles->dispatch(cmd, desc.term);
+    scanImage(*gpu, cmd, "blend over time", own.light);
+}
+
+void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
+{
+    if (desc.temporal) blend(cmd, firstSet);
+    const DescriptorSet* step = desc.temporal ? &histories[now].first : &forth;
+    for (int stride : kStrides)
+    {
+        memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        const VkDescriptorSet sets[] = {firstSet, step->handle()};
+        pipeline.bind(cmd, sets);
+        pipeline.push(cmd, DenoisePush{stride, desc.followRoughness ? 1 : 0});
+        desc.tiles->dispatch(cmd, desc.term);
+        step = step == &back ? &forth : &back;
+    }
+}
+
+uint64_t Denoiser::deviceBytes() const
+{
+    return desc.temporal ? uint64_t(desc.width) * desc.height * 2 * (16 + 8) : 0;
+}
+
+} // namespace sconce

@@ -1,0 +1,243 @@
+#include "runtime/frame/indirect_light.h"
+
+#include "runtime/frame/environment_brdf.h"
+#include "runtime/vulkan/nan_scan.h"
+#include "spirv/gather_light_comp.h"
+#include "spirv/reconstruct_comp.h"
+#include "spirv/trace_glossy_comp.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr uint32_t kTableBinding = 6; // gather_light.comp: the environment BRDF
+
+std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc)
+{
+    const uint32_t most = gpu.properties.limits.maxImageDimension2D;
+    if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
+        return "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) + " is outside 1.." + std::to_string(most) +
+               " pixels a side";
+    if (desc.traceEvery < 1 || desc.traceEvery > 16 || !std::has_single_bit(desc.traceEvery))
+        return "one traced pixel of " + std::to_string(desc.traceEvery) + " must be of 1, 2, 4, 8 or 16";
+    if (desc.effects.rough && !field.holdsPrefiltered())
+        return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
+    if (desc.effects.diffuse && desc.effects.patches && !desc.effects.tracedDiffuse && !field.holdsPatches())
+        return "the light field holds no patches: it is older, or its maps are octahedral; bake it again with cube faces, or leave patches "
+               "out";
+    const bool rays = desc.effects.glossy || desc.effects.mirror || (desc.effects.diffuse && desc.effects.tracedDiffuse);
+    if (rays && !field.holdsRadiance() && !field.holdsPrefiltered())
+        return "the light field holds no radiance; bake it with the effect 'glossy', or leave 'glossy', 'mirror' and traced diffuse light "
+               "out";
+    return {};
+}
+
+} // namespace
+
+Status IndirectLight::makeImage(GpuImage& target, VkFormat format, const char* what)
+{
+    auto made = makeLightImage(*gpu, format, desc.width, desc.height, what);
+    if (!made) return made.error();
+    target = std::move(*made);
+    return success();
+}
+
+/// @param images     of bindings 4 and 5
+/// @param constants  after the field's and whether the pass runs on tiles
+Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
+                               std::initializer_list<uint32_t> constants)
+{
+    const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {kTableBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                               {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto made = makeFrameSet(*gpu, frame, bindings);
+    if (!made) return made.error();
+    set = std::move(*made);
+    uint32_t binding = 4;
+    for (const GpuImage* image : images) set.write(binding++, image->view(), VK_IMAGE_LAYOUT_GENERAL);
+    set.write(kTableBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
+    set.write(kTileBinding, tileList->buffer());
+    const auto fieldConstants = field->constants();
+    std::vector<uint32_t> values(fieldConstants.begin(), fieldConstants.end());
+    values.push_back(tileList->constant());
+    values.insert(values.end(), constants);
+    const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
+    auto built = Pipeline::compute(*gpu, shader, layouts, 0, values);
+    if (!built) return built.error();
+    pipeline = std::move(*built);
+    return success();
+}
+
+Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
+{
+    if (auto s = makeImage(image, kLightFormat,
+                           term == gpu::kTermMirror    ? "mirrored light"
+                           : term == gpu::kTermDiffuse ? "diffuse light"
+                                                       : "glossy light");
+        !s)
+        return s;
+    const bool counts = desc.counts && term != gpu::kTermDiffuse; // a pixel's reflections are counted
+    if (!counts && !noCounts) // what isn't written is bound all the same, in the format that the shader names
+    {
+        auto made = makeLightImage(*gpu, VK_FORMAT_R32G32B32A32_UINT, 1, 1, "stand-in for trace counts");
+        if (!made) return made.error();
+        noCounts = std::move(*made);
+    }
+    if (counts && !countImage)
+        if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
+    const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
+    return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts},
+                    {term, counts ? 1u : 0u, term == gpu::kTermMirror ? 0u : everyLog()});
+}
+
+Status IndirectLight::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
+{
+    if (desc.traceEvery == 1) return success();
+    return makePass(pipeline, set, reconstruct_comp, {&image, &image}, {term, 0u, everyLog()});
+}
+
+Status IndirectLight::makeGather()
+{
+    const IndirectEffects& effects = desc.effects;
+    if (gathersDiffuse())
+        if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
+    if (effects.rough)
+    {
+        if (auto s = makeImage(roughImage, kLightFormat, "rough reflections"); !s) return s;
+        const std::vector<glm::vec2> table = environmentBrdf();
+        auto buffer = gpu->makeBufferWith<glm::vec2>(table, 0, "environment BRDF");
+        if (!buffer) return buffer.error();
+        brdfTable = std::move(*buffer);
+    }
+    const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
+    const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
+    return makePass(gatherPass, gatherSet, gather_light_comp, {&diffuse, &rough},
+                    {gathersDiffuse() ? 1u : 0u, effects.rough ? 1u : 0u, gatherList(), effects.patches ? 1u : 0u});
+}
+
+Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, const Desc& desc)
+{
+    if (const std::string problem = problemOf(gpu, field, desc); !problem.empty()) return Error{ErrorCode::badArgument, problem};
+    IndirectLight made;
+    made.gpu = &gpu;
+    made.field = &field;
+    made.desc = desc;
+    auto frame = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
+    if (!frame) return frame.error();
+    made.frame = std::move(*frame);
+    const IndirectEffects& effects = desc.effects;
+    if (effects.diffuse || effects.rough || effects.glossy || effects.mirror)
+    {
+        auto tiles = TileList::create(gpu, made.frame, {desc.width, desc.height, made.everyLog(), effects.tiles});
+        if (!tiles) return tiles.error();
+        made.tileList = std::make_unique<TileList>(std::move(*tiles));
+    }
+    if (made.gathersDiffuse() || effects.rough)
+        if (auto s = made.makeGather(); !s) return s.error();
+    if (effects.diffuse && effects.tracedDiffuse)
+    {
+        if (auto s = made.makeTrace(gpu::kTermDiffuse, made.diffuseImage, made.diffusePass, made.diffuseSet); !s) return s.error();
+        if (auto s = made.makeFill(gpu::kTermDiffuse, made.diffuseImage, made.diffuseFill, made.diffuseFillSet); !s) return s.error();
+    }
+    if (effects.mirror)
+        if (auto s = made.makeTrace(gpu::kTermMirror, made.mirrorImage, made.mirrorPass, made.mirrorSet); !s) return s.error();
+    if (!effects.glossy) return made;
+    if (auto s = made.makeTrace(gpu::kTermGlossy, made.glossyImage, made.glossyPass, made.glossySet); !s) return s.error();
+    if (auto s = made.makeFill(gpu::kTermGlossy, made.glossyImage, made.glossyFill, made.glossyFillSet); !s) return s.error();
+    if (!effects.denoise) return made;
+    if (auto s = made.makeImage(made.scratch, kLightFormat, "scratch of the glossy filter"); !s) return s.error();
+    auto denoiser = Denoiser::create(gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, made.tiles(), desc.width, desc.height},
+                                     made.frame, made.glossyImage, made.scratch);
+    if (!denoiser) return denoiser.error();
+    made.denoiser = std::move(*denoiser);
+    return made;
+}
+
+void IndirectLight::setInputs(const FrameInputs& inputs)
+{
+    for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet},
+                                    {&mirrorPass, &mirrorSet},
+                                    {&diffusePass, &diffuseSet},
+                                    {&gatherPass, &gatherSet},
+                                    {&glossyFill, &glossyFillSet},
+                                    {&diffuseFill, &diffuseFillSet}})
+        if (*pass) writeInputs(*set, inputs);
+    if (tileList) tileList->setInputs(inputs);
+    if (denoiser) denoiser.setInputs(inputs);
+}
+
+void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
+{
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT); // the frame before may still read what this one writes
+    gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
+    if (countImage)
+    {
+        const VkClearColorValue nothing{.uint32 = {gpu::kNoProbe, 0, 0, 0}};
+        const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
+    }
+    memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
+                  VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    const auto timed = [&](const char* name, auto&& work)
+    {
+        if (timer) timer->begin(cmd, name);
+        work();
+        if (timer) timer->end(cmd);
+    };
+    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, uint32_t list, const char* name, uint32_t tilesLog = 0)
+    {
+        if (!pipeline) return;
+        timed(name,
+              [&]
+              {
+                  const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
+                  pipeline.bind(cmd, sets);
+                  tileList->dispatch(cmd, list, tilesLog);
+              });
+    };
+    const auto scan = [&](const char* name, std::initializer_list<const GpuImage*> images)
+    {
+        for (const GpuImage* image : images)
+            if (*image) scanImage(*gpu, cmd, name, *image);
+    };
+    if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
+    pass(gatherPass, gatherSet, gatherList(), "gather light");
+    scan("gather light", {&diffuseImage, &roughImage});
+    pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace", everyLog());
+    scan("diffuse trace", {&diffuseImage});
+    pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace", everyLog());
+    scan("glossy trace", {&glossyImage});
+    if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    pass(mirrorPass, mirrorSet, gpu::kTermMirror, "mirror trace");
+    scan("mirror trace", {&mirrorImage});
+    if (glossyFill || diffuseFill)
+    {
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        pass(diffuseFill, diffuseFillSet, gpu::kTermDiffuse, "diffuse fill");
+        scan("diffuse fill", {&diffuseImage});
+        pass(glossyFill, glossyFillSet, gpu::kTermGlossy, "glossy fill");
+        scan("glossy fill", {&glossyImage});
+    }
+    if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field->descriptorSet()); });
+    scan("glossy denoise", {&glossyImage, &scratch});
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT);
+}
+
+uint64_t IndirectLight::deviceBytes() const
+{
+    const uint64_t pixels = uint64_t(desc.width) * desc.height;
+    uint64_t bytes = frame.size() + brdfTable.size() + (tileList ? tileList->buffer().size() : 0);
+    for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
+        if (*image) bytes += 16 * pixels;
+    return bytes + denoiser.deviceBytes();
+}
+
+} // namespace sconce

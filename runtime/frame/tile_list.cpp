@@ -1,0 +1,63 @@
+#include "runtime/frame/tile_list.h"
+
+#include "spirv/classify_tiles_comp.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr uint32_t kRuns = 2 * gpu::kListCount; // of passes, then of sparse passes
+
+} // namespace
+
+Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& desc)
+{
+    TileList made;
+    made.gpu = &gpu;
+    made.desc = desc;
+    made.across = (desc.width + gpu::kTileSide - 1) / gpu::kTileSide;
+    made.down = (desc.height + gpu::kTileSide - 1) / gpu::kTileSide;
+    const VkDeviceSize words = VkDeviceSize(gpu::kListCount + gpu::kTileSide) * made.across * made.down;
+    auto lists =
+        gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
+    if (!lists) return lists.error();
+    made.lists = std::move(*lists);
+    const DescriptorSet::Binding bindings[] = {{kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto set = makeFrameSet(gpu, frame, bindings);
+    if (!set) return set.error();
+    made.set = std::move(*set);
+    made.set.write(kTileBinding, made.lists);
+    const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
+    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, std::span(&desc.everyLog, 1));
+    if (!pipeline) return pipeline.error();
+    made.pipeline = std::move(*pipeline);
+    return made;
+}
+
+void TileList::record(VkCommandBuffer cmd) const
+{
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, indirect = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    gpu::TileRuns none[kRuns];
+    for (gpu::TileRuns& runs : none) runs = {gpu::kTileRow, 0, 1, 0};
+    memoryBarrier(*gpu, cmd, compute | indirect, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT); // the frame before may still run by them
+    gpu->vk.CmdUpdateBuffer(cmd, lists.handle(), 0, sizeof none, none);
+    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    const VkDescriptorSet sets[] = {set.handle(), set.handle()};
+    pipeline.bind(cmd, sets);
+    gpu->vk.CmdDispatch(cmd, across, down, 1);
+    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute | indirect,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+}
+
+void TileList::dispatch(VkCommandBuffer cmd, uint32_t list, uint32_t everyLog) const
+{
+    if (desc.tiled)
+        gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (list + (everyLog > 0 ? gpu::kListCount : 0)) * sizeof(gpu::TileRuns));
+    else
+        gpu->vk.CmdDispatch(cmd, across, ((down - 1) >> everyLog) + 1, 1);
+}
+
+} // namespace sconce

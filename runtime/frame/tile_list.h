@@ -1,0 +1,45 @@
+#pragma once
+
+#include "runtime/frame/frame_inputs.h"
+#include "shaders/shared/frame.h"
+
+namespace sconce
+{
+
+/// Which tiles of a frame need which term, and which terms each pixel has (shaders/shared/frame.h): classified on the device from the
+/// G-buffer, so that each pass runs only where it is called for, and filters ask a neighbour's terms by one read. Cost: one read of the
+/// G-buffer a pixel.
+class TileList
+{
+public:
+    struct Desc
+    {
+        uint32_t width = 0, height = 0; // pixels
+        uint32_t everyLog = 0;          // log2 of the tiles that a workgroup of a sparse pass takes
+        bool tiled = true;              // false: passes run over the whole picture, with the same pixels
+    };
+    /// @param frame  the gpu::FrameView, a uniform buffer
+    static Result<TileList> create(Gpu& gpu, const Buffer& frame, const Desc& desc);
+    void setInputs(const FrameInputs& inputs) { writeInputs(set, inputs); }
+    /// Ends with the barrier that lets passes run by the lists.
+    void record(VkCommandBuffer cmd) const;
+    /// Dispatches the bound pass over a list's tiles, or over the whole picture.
+    /// @param everyLog  log2 of the tiles that a workgroup takes: 0, or Desc's
+    void dispatch(VkCommandBuffer cmd, uint32_t list, uint32_t everyLog = 0) const;
+    uint32_t constant() const { return desc.tiled ? 1 : 0; } // kTiled of shaders/tiles.glsl
+
+    const Buffer& buffer() const { return lists; } // binding kTileBinding of shaders/tiles.glsl
+    explicit operator bool() const { return bool(pipeline); }
+
+private:
+    Gpu* gpu = nullptr;
+    Desc desc;
+    uint32_t across = 0, down = 0; // tiles
+    Buffer lists;
+    DescriptorSet set;
+    Pipeline pipeline;
+};
+
+inline constexpr uint32_t kTileBinding = 8;
+
+} // namespace sconce

@@ -1,0 +1,291 @@
+#include "runtime/scene/device_scene.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "runtime/vulkan/nan_scan.h"
+#include "spirv/shadow_masked_frag.h"
+#include "spirv/shadow_masked_vert.h"
+#include "spirv/shadow_vert.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+std::string settingsFault(const DeviceSceneDesc& desc)
+{
+    struct Range
+    {
+        const char* name;
+        uint32_t value, low, high;
+    };
+    const bool maps = desc.light.areaShadows;
+    for (const Range& r : {Range{"maxTextureSize", desc.maxTextureSize, 1, 4096},
+                           Range{"emitterSamples", desc.light.emitterSamples, 0, maps ? 340u : 65536u},
+                           Range{"skySamples", desc.light.skySamples, 0, maps ? 1024u : 65536u},
+                           Range{"sunShadow", desc.light.sunShadow, 256, 8192}, Range{"pointShadow", desc.light.pointShadow, 64, 2048},
+                           Range{"emitterShadow", desc.light.emitterShadow, 32, 1024}, Range{"skyShadow", desc.light.skyShadow, 128, 4096}})
+        if (r.value < r.low || r.value > r.high)
+            return std::string(r.name) + " is " + std::to_string(r.value) + "; give a value in [" + std::to_string(r.low) + ", " +
+                   std::to_string(r.high) + "]";
+    return {};
+}
+
+Result<GpuImage> depthArray(Gpu& gpu, uint32_t size, uint32_t layers, VkFormat format, const char* what)
+{
+    ImageDesc desc;
+    desc.format = format;
+    desc.width = desc.height = size;
+    desc.layers = layers;
+    desc.array = true;
+    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    return gpu.makeImage(desc, what);
+}
+
+/// The pipelines that draw depth alone, for one depth format.
+struct DepthPipelines
+{
+    Pipeline opaque, masked;
+
+    static Result<DepthPipelines> create(Gpu& gpu, VkDescriptorSetLayout sceneSet, VkFormat format, bool hasMasked)
+    {
+        const VkDescriptorSetLayout sets[] = {sceneSet};
+        Pipeline::Graphics desc;
+        desc.vertex = shadow_vert;
+        desc.pushBytes = sizeof(SceneView);
+        desc.vertexBindings = SceneMesh::vertexBindings();
+        desc.vertexAttributes = SceneMesh::vertexAttributes().first(1);
+        desc.depthFormat = format;
+        auto opaque = Pipeline::graphics(gpu, desc);
+        if (!opaque) return opaque.error();
+        if (!hasMasked) return DepthPipelines{std::move(*opaque), {}};
+        desc.vertex = shadow_masked_vert;
+        desc.fragment = shadow_masked_frag;
+        desc.sets = sets;
+        desc.vertexAttributes = SceneMesh::vertexAttributes();
+        auto masked = Pipeline::graphics(gpu, desc);
+        if (!masked) return masked.error();
+        return DepthPipelines{std::move(*opaque), std::move(*masked)};
+    }
+};
+
+void renderDepth(Gpu& gpu, VkCommandBuffer cmd, const DepthPipelines& pipelines, const SceneMesh& mesh, VkDescriptorSet sceneSet,
+                 const GpuImage& maps, uint32_t layer, const SceneView& view, SceneDraws& draws)
+{
+    VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    depth.imageView = maps.layerView(layer);
+    depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE; // cleared to 0: infinitely far
+    const uint32_t size = maps.desc().width;
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea = {{0, 0}, {size, size}};
+    rendering.layerCount = 1;
+    rendering.pDepthAttachment = &depth;
+    gpu.vk.CmdBeginRendering(cmd, &rendering);
+    const VkViewport viewport{0.0f, 0.0f, float(size), float(size), 0.0f, 1.0f};
+    gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+    gpu.vk.CmdSetScissor(cmd, 0, 1, &rendering.renderArea);
+    mesh.bind(cmd);
+    mesh.cull(view, draws);
+    if (!draws.opaque.empty())
+    {
+        pipelines.opaque.bind(cmd);
+        pipelines.opaque.push(cmd, view);
+        mesh.draw(cmd, draws.opaque);
+    }
+    if (!draws.masked.empty())
+    {
+        pipelines.masked.bind(cmd, {&sceneSet, 1});
+        pipelines.masked.push(cmd, view);
+        mesh.draw(cmd, draws.masked);
+    }
+    gpu.vk.CmdEndRendering(cmd);
+}
+
+VkSamplerCreateInfo samplerInfo(VkFilter filter, VkSamplerAddressMode wrap)
+{
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = filter;
+    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    info.addressModeU = info.addressModeV = info.addressModeW = wrap;
+    info.maxLod = VK_LOD_CLAMP_NONE;
+    return info;
+}
+
+} // namespace
+
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects)
+{
+    DeviceSceneDesc desc;
+    if (!effects.diffuse || effects.tracedDiffuse)
+        desc.light.emitterSamples = desc.light.skySamples = 0;
+    else if (effects.fieldShadows)
+    {
+        desc.light.areaShadows = false;
+        desc.light.emitterSamples = desc.light.skySamples = kTracedLightSamples;
+    }
+    return desc;
+}
+
+Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu::LightFieldInfo& space, const DeviceSceneDesc& desc,
+                                        const Progress& progress)
+{
+    if (scene.triangles.empty())
+        return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no triangles; there is nothing to light"};
+    if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
+    if (const std::string fault = settingsFault(desc); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    const uint64_t before = gpu.memory().used();
+    auto mesh = SceneMesh::create(gpu, scene, space);
+    if (!mesh) return mesh.error();
+    DeviceScene made(std::move(*mesh));
+    auto color = makeTextureArray(gpu, scene, TextureKind::color, desc.maxTextureSize);
+    if (!color) return color.error();
+    made.color = std::move(*color);
+    auto data = makeTextureArray(gpu, scene, TextureKind::data, desc.maxTextureSize);
+    if (!data) return data.error();
+    made.data = std::move(*data);
+    const std::vector<gpu::GpuMaterial> materials = gpuMaterials(scene, made.color, made.data);
+    auto materialBuffer = gpu.makeBufferWith<gpu::GpuMaterial>(materials, 0, "The scene's materials");
+    if (!materialBuffer) return materialBuffer.error();
+    made.materials = std::move(*materialBuffer);
+
+    made.lightList = buildLightList(scene, space, desc.light);
+    std::vector<std::byte> list(sizeof(gpu::LightsHeader) + std::max<size_t>(made.lightList.lights.size(), 1) * sizeof(gpu::GpuLight));
+    std::memcpy(list.data(), &made.lightList.header, sizeof(gpu::LightsHeader));
+    if (!made.lightList.lights.empty())
+        std::memcpy(list.data() + sizeof(gpu::LightsHeader), made.lightList.lights.data(),
+                    made.lightList.lights.size() * sizeof(gpu::GpuLight));
+    auto lightBuffer = gpu.makeBufferWith<std::byte>(list, 0, "The list of lights");
+    if (!lightBuffer) return lightBuffer.error();
+    made.lightBuffer = std::move(*lightBuffer);
+
+    VkSamplerCreateInfo compare = samplerInfo(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    compare.compareEnable = VK_TRUE;
+    compare.compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL; // lit where nothing in the map is nearer
+    auto smooth = Sampler::create(gpu, compare);
+    if (!smooth) return smooth.error();
+    made.smoothCompare = std::move(*smooth);
+    compare.magFilter = compare.minFilter = VK_FILTER_NEAREST;
+    auto nearest = Sampler::create(gpu, compare);
+    if (!nearest) return nearest.error();
+    made.nearestCompare = std::move(*nearest);
+    auto sampler = Sampler::create(gpu, samplerInfo(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT));
+    if (!sampler) return sampler.error();
+    made.textureSampler = std::move(*sampler);
+
+    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    for (uint32_t b : {1u, 2u, 4u, 5u, 6u, 7u}) bindings.push_back({b, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
+    auto set = DescriptorSet::create(gpu, bindings);
+    if (!set) return set.error();
+    made.set = std::move(*set);
+    made.set.write(0, made.materials);
+    made.set.write(1, made.color.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, made.textureSampler.handle());
+    made.set.write(2, made.data.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, made.textureSampler.handle());
+    made.set.write(3, made.lightBuffer);
+    if (auto status = made.makeShadowMaps(gpu, progress); !status) return status.error();
+    gpu.releaseStaging();
+    made.bytes = gpu.memory().used() - before;
+    return made;
+}
+
+Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
+{
+    const LightSettings& sizes = lightList.settings;
+    struct Kind
+    {
+        GpuImage& maps;
+        uint32_t size, layers, binding;
+        VkFormat format;
+        const Sampler& sampler;
+        const char* what;
+    };
+    const Kind kinds[] = {
+        {sunMaps, sizes.sunShadow, lightList.sunLayers, 4, VK_FORMAT_D32_SFLOAT, smoothCompare, "The suns' shadow maps"},
+        {skyMaps, sizes.skyShadow, lightList.skyLayers, 5, VK_FORMAT_D16_UNORM, nearestCompare, "The sky's shadow maps"},
+        {pointMaps, sizes.pointShadow, lightList.pointLayers, 6, VK_FORMAT_D32_SFLOAT, smoothCompare, "The point lights' shadow maps"},
+        {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, 7, VK_FORMAT_D32_SFLOAT, nearestCompare, "The emitters' shadow maps"}};
+    const auto toAttachment = [&](VkCommandBuffer cmd, const GpuImage& maps)
+    {
+        transition(gpu, cmd, maps,
+                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
+                    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
+                    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
+    };
+    const auto toSampled = [&](VkCommandBuffer cmd, const GpuImage& maps)
+    {
+        transition(gpu, cmd, maps,
+                   {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    };
+    const bool none = std::ranges::all_of(kinds, [](const Kind& kind) { return kind.layers == 0; });
+    if (none) // the bindings of kinds that a scene lacks are another kind's maps, which nothing reads; these where all lack
+    {
+        auto maps = depthArray(gpu, 1, 1, VK_FORMAT_D16_UNORM, "The stand-in for shadow maps");
+        if (!maps) return maps.error();
+        noMaps = std::move(*maps);
+    }
+    const GpuImage* any = &noMaps;
+    bool formats[2] = {}; // 32 bits, 16 bits
+    for (const Kind& kind : kinds)
+    {
+        if (kind.layers == 0) continue;
+        auto maps = depthArray(gpu, kind.size, kind.layers, kind.format, kind.what);
+        if (!maps) return maps.error();
+        kind.maps = std::move(*maps);
+        any = &kind.maps;
+        formats[kind.format == VK_FORMAT_D32_SFLOAT ? 0 : 1] = true;
+    }
+    for (const Kind& kind : kinds)
+        set.write(kind.binding, (kind.maps ? kind.maps : *any).view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kind.sampler.handle());
+    const auto everyMap = [&](VkCommandBuffer cmd, const auto& to)
+    {
+        for (const Kind& kind : kinds)
+            if (kind.maps) to(cmd, kind.maps);
+        if (noMaps) to(cmd, noMaps);
+    };
+    auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); });
+    if (!status) return status;
+    DepthPipelines pipelines[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        if (!formats[i]) continue;
+        auto made = DepthPipelines::create(gpu, set.layout(), i == 0 ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_D16_UNORM, triangles.hasMasked());
+        if (!made) return made.error();
+        pipelines[i] = std::move(*made);
+    }
+    SceneDraws draws;
+    for (size_t i = 0; i < lightList.lights.size(); ++i)
+    {
+        if (!report(progress, "shadow maps", double(i) / double(lightList.lights.size())))
+            return Error{ErrorCode::cancelled, "The bake was stopped while rendering shadow maps"};
+        const gpu::GpuLight& light = lightList.lights[i];
+        if (light.shadowLayer == kNoShadowMap) continue;
+        const Kind& kind = kinds[light.type == gpu::kLightDirectional ? 0
+                                 : light.type == gpu::kLightSky       ? 1
+                                 : light.type == gpu::kLightEmitter   ? 3
+                                                                      : 2];
+        const std::vector<SceneView> views = shadowViews(light, lightList.header.pointNear);
+        status = gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                for (uint32_t v = 0; v < views.size(); ++v)
+                    renderDepth(gpu, cmd, pipelines[kind.format == VK_FORMAT_D32_SFLOAT ? 0 : 1], triangles, set.handle(), kind.maps,
+                                uint32_t(light.shadowLayer) + v, views[v], draws);
+            });
+        if (!status) return status;
+    }
+    return gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            everyMap(cmd, toSampled);
+            for (const Kind& kind : kinds)
+                if (kind.maps && kind.layers > 0) scanImage(gpu, cmd, "shadow maps", kind.maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        });
+}
+
+} // namespace sconce

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+
+#include "base/progress.h"
+#include "runtime/frame/effect_plan.h"
+#include "runtime/scene/lights.h"
+#include "runtime/scene/scene_mesh.h"
+#include "runtime/scene/scene_textures.h"
+#include "runtime/vulkan/pipeline.h"
+
+namespace sconce
+{
+
+struct DeviceSceneDesc
+{
+    uint32_t maxTextureSize = 1024; // texels a side, 1..4096; larger images are filtered down
+    LightSettings light;
+};
+
+inline constexpr uint32_t kTracedLightSamples = 1024; // of the emitters, and of the sky, where rays shadow them: 112 bytes each, and no map
+
+/// What frames with these effects need of a scene: without diffuse light, or where rays give it, no samples of emitters and sky, and so no
+/// shadow maps of them; with `fieldShadows` more samples, without maps. A bake needs them always.
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects);
+
+/// A scene on the device: triangles, materials, textures, lights, and shadow maps rendered once. Move-only; destroy it after the GPU has
+/// finished with it and before its Gpu.
+class DeviceScene
+{
+public:
+    /// Uploads the scene and renders its shadow maps (submits and waits, a few maps at a time).
+    /// Errors: badInput (an empty or invalid scene: names the fault), badArgument (settings), outOfMemory, deviceFailure, cancelled.
+    static Result<DeviceScene> create(Gpu& gpu, const Scene& scene, const gpu::LightFieldInfo& space, const DeviceSceneDesc& desc = {},
+                                      const Progress& progress = {});
+
+    /// What shaders/scene.glsl declares; sampled by fragment and compute shaders.
+    VkDescriptorSetLayout layout() const { return set.layout(); }
+    VkDescriptorSet descriptorSet() const { return set.handle(); }
+    const SceneMesh& mesh() const { return triangles; }
+    const LightList& lights() const { return lightList; }
+    uint64_t deviceBytes() const { return bytes; }
+
+private:
+    explicit DeviceScene(SceneMesh mesh) : triangles(std::move(mesh)) {}
+    Status makeShadowMaps(Gpu& gpu, const Progress& progress);
+    SceneMesh triangles;
+    TextureArray color, data;
+    Buffer materials, lightBuffer;
+    LightList lightList;
+    GpuImage sunMaps, skyMaps, pointMaps, emitterMaps, noMaps;
+    Sampler textureSampler, smoothCompare, nearestCompare;
+    DescriptorSet set;
+    uint64_t bytes = 0;
+};
+
+} // namespace sconce

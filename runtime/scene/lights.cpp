@@ -1,0 +1,235 @@
+#include "runtime/scene/lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/numbers.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+/// Van der Corput's radical inverse in base 2 and 3: the points of a patch within its triangle.
+float radicalInverse(uint32_t i, uint32_t base)
+{
+    float inverse = 0.0f, digit = 1.0f / float(base);
+    for (; i > 0; i /= base, digit /= float(base)) inverse += digit * float(i % base);
+    return inverse;
+}
+
+/// Mean of a triangle's emission, by seven points of equal weight when it has a texture (its corners drawn in, edge middles, centroid).
+vec3 meanEmission(const Scene& scene, uint32_t triangle)
+{
+    const Material& material = scene.materials[scene.triangleMaterial[triangle]];
+    if (material.emission == vec3(0.0f)) return vec3(0.0f);
+    if (material.emissionTexture.image < 0) return material.emission;
+    static constexpr float kPoints[7][3] = {{0.8f, 0.1f, 0.1f},
+                                            {0.1f, 0.8f, 0.1f},
+                                            {0.1f, 0.1f, 0.8f},
+                                            {0.45f, 0.45f, 0.1f},
+                                            {0.45f, 0.1f, 0.45f},
+                                            {0.1f, 0.45f, 0.45f},
+                                            {1 / 3.0f, 1 / 3.0f, 1 / 3.0f}};
+    const uvec3 t = scene.triangles[triangle];
+    vec3 sum(0.0f);
+    for (const auto& b : kPoints)
+        sum +=
+            evaluateMaterial(scene, scene.triangleMaterial[triangle], b[0] * scene.uvs[t.x] + b[1] * scene.uvs[t.y] + b[2] * scene.uvs[t.z])
+                .emission;
+    return sum / 7.0f;
+}
+
+void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t count, LightList& list)
+{
+    struct Emitter
+    {
+        uint32_t triangle;
+        vec3 emission;
+        double area, power;
+        double share = 0.0, end = 0.0; // of the samples, and of its stretch of the cumulated shares
+    };
+    std::vector<Emitter> emitters;
+    double power = 0.0, area = 0.0;
+    for (uint32_t t = 0; t < scene.triangles.size(); ++t)
+    {
+        const vec3 emission = meanEmission(scene, t);
+        if (emission == vec3(0.0f)) continue;
+        const uvec3 corner = scene.triangles[t];
+        const glm::dvec3 a(scene.positions[corner.x]), b(scene.positions[corner.y]), c(scene.positions[corner.z]);
+        const double own = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
+        emitters.push_back({t, emission, own, own * luminance(emission)});
+        power += emitters.back().power;
+        area += own;
+    }
+    if (!(power > 0.0)) return;
+    double shares = 0.0;
+    for (Emitter& emitter : emitters)
+    {
+        emitter.share = 0.5 * (emitter.power / power + emitter.area / area);
+        emitter.end = shares += emitter.share;
+    }
+    const size_t first = list.lights.size();
+    double carried = 0.0;
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        const double target = shares * (i + 0.5) / count;
+        const auto found = std::lower_bound(emitters.begin(), emitters.end(), target, [](const Emitter& e, double p) { return e.end < p; });
+        const Emitter& emitter = found == emitters.end() ? emitters.back() : *found;
+        const uvec3 corner = scene.triangles[emitter.triangle];
+        const double begin = found == emitters.begin() || found == emitters.end() ? 0.0 : (found - 1)->end;
+        // Where the stratum lies in the triangle's stretch is one coordinate, so that strata of one triangle spread over it as rows.
+        const float along = found == emitters.end() ? 0.5f : float((target - begin) / (emitter.end - begin));
+        const float root = std::sqrt(std::clamp(along, 0.0f, 1.0f)), across = radicalInverse(i + 1, 2);
+        const vec3 a = scene.positions[corner.x], b = scene.positions[corner.y], c = scene.positions[corner.z];
+        const vec3 point = (1.0f - root) * a + root * (1.0f - across) * b + root * across * c; // Osada et al. 2002, uniform in a triangle
+        gpu::GpuLight light{};
+        light.type = gpu::kLightEmitter;
+        light.position = (point - space.origin) / space.scale;
+        light.direction = geometricNormal(scene, emitter.triangle);
+        light.intensity = emitter.emission;
+        light.area = float(emitter.area / (count * emitter.share));
+        carried += double(light.area) * luminance(emitter.emission);
+        light.shadowLayer = kNoShadowMap;
+        list.lights.push_back(light);
+        ++list.header.emitterCount;
+    }
+    for (size_t i = first; i < list.lights.size(); ++i)
+        list.lights[i].area *= float(power / carried); // what rounding to samples took or gave
+}
+
+/// An orthographic map of the whole scene along a light's direction.
+void fitDirectional(gpu::GpuLight& light, const gpu::LightFieldInfo& space, uint32_t size)
+{
+    const vec3 forward = light.direction;
+    const vec3 helper = std::abs(forward.y) < 0.9f ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f);
+    const vec3 axes[3] = {glm::normalize(glm::cross(helper, forward)), glm::normalize(glm::cross(forward, glm::cross(helper, forward))),
+                          forward};
+    vec4 rows[3];
+    const vec3 middle = 0.5f * (space.sceneLow + space.sceneHigh), half = 0.5f * (space.sceneHigh - space.sceneLow);
+    for (int i = 0; i < 3; ++i)
+    {
+        const float centre = glm::dot(axes[i], middle);
+        // The margin keeps the border of the scene inside the map's filter, and depth off its ends.
+        const float reach = std::max(glm::dot(glm::abs(axes[i]), half), 1e-6f) * (1.0f + 4.0f / float(size)) + 1e-4f * space.diagonal;
+        rows[i] = vec4(axes[i], -centre) * (0.5f / reach) + vec4(0.0f, 0.0f, 0.0f, 0.5f);
+        if (i < 2) light.shadowTexel = std::max(light.shadowTexel, 2.0f * reach / float(size));
+    }
+    light.shadowX = rows[0];
+    light.shadowY = rows[1];
+    light.shadowDepth = vec4(0.0f, 0.0f, 0.0f, 1.0f) - rows[2];
+}
+
+void addDelta(const Scene& scene, const gpu::LightFieldInfo& space, LightList& list)
+{
+    for (const Light& source : scene.lights)
+    {
+        gpu::GpuLight light{};
+        light.position = (source.position - space.origin) / space.scale;
+        light.direction = source.direction;
+        light.intensity = source.type == LightType::directional ? source.intensity : source.intensity / (space.scale * space.scale);
+        light.range = source.range / space.scale;
+        light.innerCone = source.innerCone;
+        light.outerCone = source.outerCone;
+        light.type = uint32_t(source.type);
+        uint32_t& layers = source.type == LightType::directional ? list.sunLayers : list.pointLayers;
+        light.shadowLayer = int(layers);
+        layers += source.type == LightType::directional ? 1 : 6;
+        list.lights.push_back(light);
+        ++list.header.deltaCount;
+    }
+}
+
+void addSky(const Scene& scene, uint32_t count, LightList& list)
+{
+    if (scene.sky == vec3(0.0f)) return;
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        const float y = 1.0f - (2.0f * float(i) + 1.0f) / float(count), r = std::sqrt(std::max(0.0f, 1.0f - y * y));
+        const double turn = double(i) * (std::numbers::phi - 1.0);
+        const float angle = 2.0f * kPi * float(turn - std::floor(turn));
+        gpu::GpuLight light{};
+        light.type = gpu::kLightSky;
+        light.direction = vec3(r * std::cos(angle), y, r * std::sin(angle));
+        light.intensity = scene.sky * (4.0f * kPi / float(count));
+        light.shadowLayer = kNoShadowMap;
+        list.lights.push_back(light);
+        ++list.header.skyCount;
+    }
+}
+
+/// Gives the emitters' and the sky's entries their layers.
+void addAreaShadows(LightList& list)
+{
+    for (gpu::GpuLight& light : list.lights)
+    {
+        if (light.type == gpu::kLightEmitter)
+        {
+            light.shadowLayer = int(list.emitterLayers);
+            list.emitterLayers += 6;
+        }
+        else if (light.type == gpu::kLightSky)
+            light.shadowLayer = int(list.skyLayers++);
+    }
+}
+
+} // namespace
+
+LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, const LightSettings& settings)
+{
+    LightList list;
+    list.header.pointNear = 1e-4f * space.diagonal;
+    addDelta(scene, space, list);
+    addEmitters(scene, space, settings.emitterSamples, list);
+    addSky(scene, settings.skySamples, list);
+    if (settings.areaShadows) addAreaShadows(list);
+    list.settings = settings;
+    const auto limit = [](uint32_t& size, uint32_t layers, uint32_t texelBytes)
+    {
+        while (size > 32 && uint64_t(layers) * size * size * texelBytes > kShadowBytes) size /= 2;
+    };
+    limit(list.settings.sunShadow, list.sunLayers, 4);
+    limit(list.settings.skyShadow, list.skyLayers, 2);
+    limit(list.settings.pointShadow, list.pointLayers, 4);
+    limit(list.settings.emitterShadow, list.emitterLayers, 4);
+    for (gpu::GpuLight& light : list.lights)
+    {
+        if (light.type == gpu::kLightDirectional)
+            fitDirectional(light, space, list.settings.sunShadow);
+        else if (light.type == gpu::kLightSky)
+            fitDirectional(light, space, list.settings.skyShadow);
+        else
+            light.shadowTexel = 2.0f / float(light.type == gpu::kLightEmitter ? list.settings.emitterShadow : list.settings.pointShadow);
+    }
+    return list;
+}
+
+SceneView faceView(vec3 centre, int face, float nearPlane)
+{
+    const int axis = face >> 1;
+    mat4 rows(0.0f); // glm keeps columns: filled as rows, then turned
+    rows[0][(axis + 1) % 3] = 1.0f;
+    rows[1][(axis + 2) % 3] = 1.0f;
+    rows[2][3] = nearPlane;
+    rows[3][axis] = (face & 1) ? -1.0f : 1.0f;
+    return {glm::transpose(rows), centre};
+}
+
+std::vector<SceneView> shadowViews(const gpu::GpuLight& light, float pointNear)
+{
+    if (light.type == gpu::kLightDirectional || light.type == gpu::kLightSky)
+    {
+        const vec4 one(0.0f, 0.0f, 0.0f, 1.0f);
+        return {{glm::transpose(mat4(2.0f * light.shadowX - one, 2.0f * light.shadowY - one, light.shadowDepth, one)), vec3(0.0f)}};
+    }
+    std::vector<SceneView> views;
+    for (int face = 0; face < 6; ++face) views.push_back(faceView(light.position, face, pointNear));
+    return views;
+}
+
+} // namespace sconce

@@ -1,0 +1,495 @@
+#include "runtime/scene/scene_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "runtime/vulkan/nan_scan.h"
+#include "scene/camera_check.h"
+
+#include "spirv/area_light_comp.h"
+#include "spirv/area_light_field_comp.h"
+#include "spirv/compose_comp.h"
+#include "spirv/direct_comp.h"
+#include "spirv/gbuffer_frag.h"
+#include "spirv/gbuffer_vert.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
+
+struct DirectPush
+{
+    vec3 origin;
+    float scale;
+    vec3 sky;
+    uint32_t lightCount;
+};
+
+struct AreaPush
+{
+    vec3 origin;
+    float scale;
+    uint32_t samples;
+};
+
+struct CameraBasis
+{
+    vec3 right, up, forward; // right and up scaled by the tangents of the half angles
+};
+
+CameraBasis basisOf(const Camera& camera, uint32_t width, uint32_t height)
+{
+    const float tangent = std::tan(0.5f * camera.verticalFov);
+    CameraBasis basis;
+    basis.forward = glm::normalize(camera.forward);
+    const vec3 right = glm::normalize(glm::cross(basis.forward, camera.up));
+    basis.right = right * tangent * float(width) / float(height);
+    basis.up = glm::cross(right, basis.forward) * tangent;
+    return basis;
+}
+
+/// x right, y down, depth near / W.
+SceneView viewOf(const Camera& camera, const CameraBasis& basis, const gpu::LightFieldInfo& space)
+{
+    const vec3 x = basis.right / glm::dot(basis.right, basis.right), y = -basis.up / glm::dot(basis.up, basis.up), w = basis.forward;
+    SceneView view;
+    view.clip = mat4(vec4(x.x, y.x, 0, w.x), vec4(x.y, y.y, 0, w.y), vec4(x.z, y.z, 0, w.z), vec4(0, 0, kNear, 0));
+    view.centre = (camera.eye - space.origin) / space.scale;
+    return view;
+}
+
+/// The inverse: world * depth = eye * depth + scale * near * (forward + x right - y up), and w = depth.
+mat4 worldFromClip(const Camera& camera, const CameraBasis& basis, const gpu::LightFieldInfo& space)
+{
+    const float s = space.scale * kNear;
+    return mat4(vec4(s * basis.right, 0), vec4(-s * basis.up, 0), vec4(camera.eye, 1), vec4(s * basis.forward, 0));
+}
+
+/// x right, y down, w metres along the view's axis.
+mat4 clipFromWorld(const Camera& camera, const CameraBasis& basis)
+{
+    const vec3 x = basis.right / glm::dot(basis.right, basis.right), y = -basis.up / glm::dot(basis.up, basis.up), w = basis.forward;
+    const vec3 origin(glm::dot(x, camera.eye), glm::dot(y, camera.eye), glm::dot(w, camera.eye));
+    return mat4(vec4(x.x, y.x, 0, w.x), vec4(x.y, y.y, 0, w.y), vec4(x.z, y.z, 0, w.z), vec4(-origin.x, -origin.y, 0, -origin.z));
+}
+
+} // namespace
+
+Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
+                               uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const uint32_t> constants,
+                               VkDescriptorSetLayout third)
+{
+    auto made = makeFrameSet(gpu, frameBlock, extra);
+    if (!made) return made.error();
+    set = std::move(*made);
+    writeInputs(set, gBuffer);
+    const VkDescriptorSetLayout layouts[] = {first, set.layout(), third};
+    auto built = Pipeline::compute(gpu, shader, std::span(layouts).first(third ? 3 : 2), pushBytes, constants);
+    if (!built) return built.error();
+    pipeline = std::move(*built);
+    return success();
+}
+
+Status SceneRenderer::make()
+{
+    const IndirectEffects& effects = settings.effects;
+    const bool rays = effects.glossy || effects.mirror;
+    auto light = IndirectLight::create(
+        gpu, field, {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays, settings.glossyShader});
+    if (!light) return light.error();
+    indirect.emplace(std::move(*light));
+
+    auto image = [&](GpuImage& target, VkFormat format, VkImageUsageFlags usage, const char* what) -> Status
+    {
+        ImageDesc desc;
+        desc.format = format;
+        desc.width = settings.width;
+        desc.height = settings.height;
+        desc.usage = usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        auto made = gpu.makeImage(desc, what);
+        if (!made) return made.error();
+        target = std::move(*made);
+        return success();
+    };
+    if (auto s = image(depth, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth"); !s) return s;
+    for (auto [target, format, what] : {std::tuple{&normalRoughness, kGBufferFormat, "normals"},
+                                        {&baseColorMetallic, kGBufferFormat, "base colour"},
+                                        {&emission, kLightFormat, "emission"}, // may be beyond the 65,504 of 16 bits
+                                        {&geometricNormal, kGBufferFormat, "geometric normals"}})
+        if (auto s = image(*target, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
+    for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
+                                        {&beauty, "picture", true},
+                                        {&scratch, "scratch of the diffuse filter", effects.diffuse},
+                                        {&diffuseLayer, "diffuse layer", settings.layers && effects.diffuse},
+                                        {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
+    {
+        if (!wanted) continue;
+        auto made = makeLightImage(gpu, kLightFormat, settings.width, settings.height, what);
+        if (!made) return made.error();
+        *target = std::move(*made);
+    }
+    auto block = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
+    if (!block) return block.error();
+    frameBlock = std::move(*block);
+    gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    indirect->setInputs(gBuffer);
+
+    const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
+    const VkDescriptorSetLayout layouts[] = {scene.layout()};
+    const float roughness = settings.roughness.value_or(-1.0f);
+    uint32_t specialization = 0;
+    std::memcpy(&specialization, &roughness, sizeof roughness);
+    Pipeline::Graphics desc;
+    desc.vertex = gbuffer_vert;
+    desc.fragment = gbuffer_frag;
+    desc.sets = layouts;
+    desc.pushBytes = sizeof(SceneView);
+    desc.vertexBindings = SceneMesh::vertexBindings();
+    desc.vertexAttributes = SceneMesh::vertexAttributes();
+    desc.colorFormats = formats;
+    desc.depthFormat = kDepthFormat;
+    desc.specialization = std::span(&specialization, 1);
+    auto pipeline = Pipeline::graphics(gpu, desc);
+    if (!pipeline) return pipeline.error();
+    gBufferPass = std::move(*pipeline);
+
+    const DescriptorSet::Binding directBindings[] = {
+        {4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {5, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(DirectPush), scene.layout(), {}); !s) return s;
+    directSet.write(4, emission.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    directSet.write(5, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    directSet.write(6, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
+
+    if (effects.diffuse)
+        if (auto s = makeDiffuse(); !s) return s;
+    return makeCompose();
+}
+
+bool SceneRenderer::hasAreaLight() const
+{
+    const gpu::LightsHeader& lights = scene.lights().header;
+    return !settings.effects.tracedDiffuse && lights.emitterCount + lights.skyCount > 0; // traced light has them in it
+}
+
+/// Light of emitters and sky, and the filter over all diffuse light.
+Status SceneRenderer::makeDiffuse()
+{
+    if (hasAreaLight())
+    {
+        const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                   {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                                   {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+        const bool traced = settings.effects.fieldShadows;
+        std::vector<uint32_t> constants;
+        if (traced)
+        {
+            const auto ofField = field.constants();
+            constants.assign(ofField.begin(), ofField.end());
+        }
+        constants.push_back(indirect->tiles()->constant());
+        if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings, sizeof(AreaPush),
+                              scene.layout(), constants, traced ? field.layout() : VK_NULL_HANDLE);
+            !s)
+            return s;
+        areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
+        areaSet.write(kTileBinding, indirect->tiles()->buffer());
+    }
+    const Denoiser::Desc desc{scene.layout(),    gpu::kTermDiffuse, false,          settings.effects.temporal,
+                              indirect->tiles(), settings.width,    settings.height};
+    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->diffuse(), scratch);
+    if (!made) return made.error();
+    denoiser = std::move(*made);
+    denoiser.setInputs(gBuffer);
+    return success();
+}
+
+Status SceneRenderer::makeCompose()
+{
+    const IndirectEffects& effects = settings.effects;
+    struct Shown
+    {
+        const GpuImage& image;
+        bool made;
+    };
+    // What is not made is not read: anything may be bound in its place.
+    const Shown images[] = {{direct, true},
+                            {indirect->diffuse(), effects.diffuse},
+                            {indirect->rough(), effects.rough},
+                            {indirect->glossy(), effects.glossy},
+                            {indirect->mirror(), effects.mirror},
+                            {beauty, true},
+                            {diffuseLayer, bool(diffuseLayer)},
+                            {glossyLayer, bool(glossyLayer)}};
+    std::vector<DescriptorSet::Binding> bindings;
+    for (uint32_t i = 0; i < std::size(images); ++i) bindings.push_back({4 + i, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    uint32_t made = 0;
+    for (const auto& [term, on] : {std::pair{gpu::kTermDiffuse, effects.diffuse},
+                                   {gpu::kTermRough, effects.rough},
+                                   {gpu::kTermGlossy, effects.glossy},
+                                   {gpu::kTermMirror, effects.mirror}})
+        made |= on ? 1u << term : 0u;
+    const uint32_t constants[] = {made, diffuseLayer ? 1u : 0u, glossyLayer ? 1u : 0u};
+    if (auto s = makePass(composePass, composeSet, compose_comp, bindings, 0, scene.layout(), constants); !s) return s;
+    for (uint32_t i = 0; i < std::size(images); ++i)
+        composeSet.write(4 + i, (images[i].made ? images[i].image : beauty).view(), VK_IMAGE_LAYOUT_GENERAL);
+    return success();
+}
+
+Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
+                                                             const RenderSettings& settings)
+{
+    if (settings.glossyRays < 1 || settings.glossyRays > 256)
+        return Error{ErrorCode::badArgument, "glossy rays a pixel " + std::to_string(settings.glossyRays) + " must be 1..256"};
+    const bool mapless = std::ranges::any_of(scene.lights().lights, [](const gpu::GpuLight& l) { return l.shadowLayer == kNoShadowMap; });
+    if (mapless && settings.effects.diffuse && !settings.effects.tracedDiffuse && !settings.effects.fieldShadows)
+        return Error{ErrorCode::badArgument,
+                     "The scene's emitters and sky have no shadow maps; make it with sceneForFrames() of the same effects, or ask for "
+                     "fieldShadows"};
+    std::unique_ptr<SceneRenderer> made(new SceneRenderer(gpu, scene, field, settings));
+    if (auto status = made->make(); !status) return status.error();
+    return made;
+}
+
+void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const SceneView& view)
+{
+    const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &emission, &geometricNormal};
+    VkRenderingAttachmentInfo colors[4]{};
+    for (int i = 0; i < 4; ++i)
+    {
+        transition(gpu, cmd, *targets[i],
+                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
+        colors[i].sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+        colors[i].imageView = targets[i]->view();
+        colors[i].imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        colors[i].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        colors[i].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    }
+    constexpr VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    transition(gpu, cmd, depth,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, tests,
+                VK_ACCESS_2_MEMORY_READ_BIT,
+                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
+    VkRenderingAttachmentInfo depthInfo{};
+    depthInfo.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    depthInfo.imageView = depth.view();
+    depthInfo.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depthInfo.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR; // to 0: nothing, infinitely far
+    depthInfo.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingInfo rendering{};
+    rendering.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+    rendering.renderArea.extent = {settings.width, settings.height};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 4;
+    rendering.pColorAttachments = colors;
+    rendering.pDepthAttachment = &depthInfo;
+    gpu.vk.CmdBeginRendering(cmd, &rendering);
+    const VkViewport viewport{0.0f, 0.0f, float(settings.width), float(settings.height), 0.0f, 1.0f};
+    const VkRect2D scissor{{0, 0}, {settings.width, settings.height}};
+    gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+    gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+    const VkDescriptorSet sets[] = {scene.descriptorSet()};
+    gBufferPass.bind(cmd, sets);
+    gBufferPass.push(cmd, view);
+    scene.mesh().bind(cmd);
+    scene.mesh().leaveOutBackFaces(cmd, view);
+    scene.mesh().cull(view, draws);
+    scene.mesh().draw(cmd, draws.opaque);
+    scene.mesh().draw(cmd, draws.masked);
+    gpu.vk.CmdEndRendering(cmd);
+    constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    for (const GpuImage* target : targets)
+        transition(gpu, cmd, *target,
+                   {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    transition(gpu, cmd, depth,
+               {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, read, tests, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+}
+
+void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t seed, GpuTimer* timer)
+{
+    const gpu::LightFieldInfo& space = field.info();
+    const CameraBasis basis = basisOf(camera, settings.width, settings.height);
+    gpu::FrameView view{};
+    view.worldFromClip = worldFromClip(camera, basis, space);
+    view.eye = camera.eye;
+    view.seed = seed;
+    view.size = {settings.width, settings.height};
+    view.glossyRays = settings.glossyRays;
+    view.raysBelow = settings.raysBelow;
+    if (before)
+    {
+        view.follows = 1;
+        view.eyeBefore = before->eye;
+        view.clipFromWorldBefore = clipFromWorld(*before, basisOf(*before, settings.width, settings.height));
+    }
+    before = camera;
+    view.normalOffset = settings.normalOffset * space.diagonal * space.scale;
+
+    if (timer) timer->begin(cmd, "G-buffer");
+    drawGBuffer(cmd, viewOf(camera, basis, space));
+    if (timer) timer->end(cmd);
+    for (const GpuImage* image : {&depth, &normalRoughness, &baseColorMetallic, &emission, &geometricNormal})
+        scanImage(gpu, cmd, "G-buffer", *image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
+    gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
+
+    const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
+    if (timer) timer->begin(cmd, "direct light");
+    const VkDescriptorSet directSets[] = {scene.descriptorSet(), directSet.handle()};
+    directPass.bind(cmd, directSets);
+    directPass.push(cmd, DirectPush{space.origin, space.scale, space.sky, scene.lights().header.deltaCount});
+    gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
+    if (timer) timer->end(cmd);
+    scanImage(gpu, cmd, "direct light", direct);
+
+    indirect->record(cmd, view, timer);
+
+    const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, bool withField = false)
+    {
+        memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        if (timer) timer->begin(cmd, name);
+        const VkDescriptorSet sets[] = {scene.descriptorSet(), set.handle(), field.descriptorSet()};
+        pipeline.bind(cmd, std::span(sets).first(withField ? 3 : 2));
+    };
+    if (areaPass)
+    {
+        begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
+        areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
+        indirect->tiles()->dispatch(cmd, gpu::kTermDiffuse);
+        if (timer) timer->end(cmd);
+        scanImage(gpu, cmd, "area light", indirect->diffuse());
+    }
+    if (denoiser)
+    {
+        if (timer) timer->begin(cmd, "diffuse denoise");
+        denoiser.record(cmd, scene.descriptorSet());
+        if (timer) timer->end(cmd);
+        scanImage(gpu, cmd, "diffuse denoise", indirect->diffuse());
+        scanImage(gpu, cmd, "diffuse denoise", scratch);
+    }
+    begin(composePass, composeSet, "compose");
+    gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
+    if (timer) timer->end(cmd);
+    for (const GpuImage* image : {&beauty, &diffuseLayer, &glossyLayer})
+        if (*image) scanImage(gpu, cmd, "compose", *image);
+    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT);
+}
+
+/// Four 32-bit channels a pixel; 16-bit images are widened.
+Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, VkImageLayout layout)
+{
+    const size_t pixels = size_t(settings.width) * settings.height;
+    const bool isDepth = image.desc().format == kDepthFormat, isHalf = image.desc().format == kGBufferFormat;
+    const size_t pixelBytes = isDepth ? 4 : (isHalf ? 8 : 16);
+    auto buffer = gpu.makeBuffer(pixels * pixelBytes, 0, MemoryUse::readback, "picture read back");
+    if (!buffer) return buffer.error();
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            transition(gpu, cmd, image,
+                       {layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
+                        VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+            VkBufferImageCopy copy{};
+            copy.imageSubresource = {image.aspect(), 0, 0, 1};
+            copy.imageExtent = {settings.width, settings.height, 1};
+            gpu.vk.CmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer->handle(), 1, &copy);
+            transition(gpu, cmd, image,
+                       {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout, VK_PIPELINE_STAGE_2_COPY_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                        VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                          VK_ACCESS_2_HOST_READ_BIT);
+        });
+    if (!status) return status.error();
+    std::vector<glm::vec4> values(pixels);
+    for (size_t i = 0; i < pixels; ++i)
+    {
+        const std::byte* at = buffer->mapped() + i * pixelBytes;
+        if (isDepth)
+            std::memcpy(&values[i].x, at, 4);
+        else if (isHalf)
+        {
+            uint32_t words[2];
+            std::memcpy(words, at, 8);
+            values[i] = vec4(glm::unpackHalf2x16(words[0]), glm::unpackHalf2x16(words[1]));
+        }
+        else
+            std::memcpy(&values[i], at, 16);
+    }
+    return values;
+}
+
+uint64_t SceneRenderer::deviceBytes() const
+{
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    return indirect->deviceBytes() + (scratch ? 16 * pixels : 0) + denoiser.deviceBytes();
+}
+
+Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
+{
+    if (const std::string fault = cameraFault(camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    auto timer = GpuTimer::create(gpu, 16);
+    if (!timer) return timer.error();
+    auto status = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            record(cmd, camera, settings.seed + index, &*timer);
+        });
+    if (!status) return status.error();
+
+    RenderedFrame frame;
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.times = timer->read();
+    const size_t pixels = size_t(frame.width) * frame.height;
+    auto colors = [&](std::vector<vec3>& target, const GpuImage& image, VkImageLayout layout,
+                      std::vector<float>* fourth = nullptr) -> Status
+    {
+        auto values = readBack(image, layout);
+        if (!values) return values.error();
+        target.assign(values->begin(), values->end());
+        if (fourth)
+            for (const vec4& value : *values) fourth->push_back(value.w);
+        return success();
+    };
+    constexpr VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL, read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    if (auto s = colors(frame.beauty, beauty, general); !s) return s.error();
+    if (auto s = colors(frame.direct, direct, general); !s) return s.error();
+    frame.diffuseIndirect.assign(pixels, vec3(0.0f));
+    frame.glossyIndirect.assign(pixels, vec3(0.0f));
+    frame.counts.assign(pixels, glm::uvec4(gpu::kNoProbe, 0, 0, 0));
+    for (const auto& [layer, target] : {std::pair{&diffuseLayer, &frame.diffuseIndirect}, {&glossyLayer, &frame.glossyIndirect}})
+        if (*layer)
+            if (auto s = colors(*target, *layer, general); !s) return s.error();
+    if (indirect->counts())
+    {
+        auto counts = readBack(indirect->counts(), general);
+        if (!counts) return counts.error();
+        std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));
+    }
+    if (auto s = colors(frame.normal, normalRoughness, read, &frame.roughness); !s) return s.error();
+    if (auto s = colors(frame.albedo, baseColorMetallic, read); !s) return s.error();
+    std::vector<vec3> depths;
+    if (auto s = colors(depths, depth, read); !s) return s.error();
+    frame.depth.resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) frame.depth[i] = depths[i].x > 0.0f ? kNear * field.info().scale / depths[i].x : 0.0f;
+    return frame;
+}
+
+} // namespace sconce

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+
+#include "runtime/frame/indirect_light.h"
+#include "runtime/scene/device_scene.h"
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+/// A small deferred renderer around IndirectLight: what `sconce render` and the bench draw with, and an example of a host.
+struct RenderSettings
+{
+    uint32_t width = 960, height = 540; // pixels, 1..16384
+    uint32_t glossyRays = 1;            // rays a pixel, 1..256; time of the trace grows in proportion
+    uint32_t traceEvery = 1;            // as in IndirectLight::Desc
+    IndirectEffects effects;
+    bool layers = true;                // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
+    float raysBelow = gpu::kRaysBelow; // [0,1] roughness: reflections below it are traced, above it read from prefiltered radiance
+    std::optional<float> roughness;    // [0,1]: every surface has this roughness (the benchmark of both papers)
+    uint32_t areaSamples = 8;          // samples of the emitters, and as many of the sky, a pixel, 1..1024; noise falls with the root
+    uint32_t seed = 1;
+    Spirv glossyShader;         // as in IndirectLight::Desc
+    float normalOffset = 1e-4f; // share of the scene's diagonal that rays start off their surface
+};
+
+/// One frame in host memory, row 0 at the top.
+struct RenderedFrame
+{
+    uint32_t width = 0, height = 0;
+    std::vector<vec3> beauty, direct, diffuseIndirect, glossyIndirect; // radiance to the eye, W/(m^2 sr); the last three 0 without layers
+    std::vector<float> depth;                                          // metres along the view axis; 0: nothing
+    std::vector<vec3> normal;                                          // shading normal on the viewer's side; 0: nothing
+    std::vector<vec3> albedo;                                          // base colour, linear
+    std::vector<float> roughness;
+    std::vector<glm::uvec4> counts;     // probe, hand-offs, reads, unknown rays of the glossy trace
+    std::vector<GpuTimer::Scope> times; // milliseconds a pass, by the GPU's clock
+};
+
+class SceneRenderer
+{
+public:
+    static Result<std::unique_ptr<SceneRenderer>> create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
+                                                         const RenderSettings& settings);
+    /// Records G-buffer, direct light, indirect light and composition.
+    void record(VkCommandBuffer cmd, const Camera& camera, uint32_t seed, GpuTimer* timer);
+    /// Records, submits, waits and reads every picture back.
+    /// @param index  of the frame in a sequence: added to the seed
+    Result<RenderedFrame> render(const Camera& camera, uint32_t index = 0);
+    /// The next frame doesn't follow the one before: the camera is cut.
+    void cut() { before.reset(); }
+    /// Bytes of the images and buffers of indirect light, as many as its effects call for.
+    uint64_t deviceBytes() const;
+
+private:
+    SceneRenderer(Gpu& device, const DeviceScene& lit, const LightField& asked, const RenderSettings& wanted)
+        : gpu(device), scene(lit), field(asked), settings(wanted)
+    {
+    }
+    Status make();
+    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra, uint32_t pushBytes,
+                    VkDescriptorSetLayout first, std::span<const uint32_t> constants, VkDescriptorSetLayout third = VK_NULL_HANDLE);
+    Status makeDiffuse();
+    Status makeCompose();
+    bool hasAreaLight() const;
+    void drawGBuffer(VkCommandBuffer cmd, const SceneView& view);
+    Result<std::vector<glm::vec4>> readBack(const GpuImage& image, VkImageLayout layout);
+
+    Gpu& gpu;
+    const DeviceScene& scene;
+    const LightField& field;
+    RenderSettings settings;
+    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, scratch, diffuseLayer, glossyLayer;
+    Pipeline gBufferPass, directPass, areaPass, composePass;
+    DescriptorSet directSet, areaSet, composeSet;
+    Denoiser denoiser;
+    std::optional<Camera> before; // the camera of the frame before
+    Buffer frameBlock;
+    FrameInputs gBuffer;
+    std::optional<IndirectLight> indirect;
+    SceneDraws draws;
+};
+
+} // namespace sconce

@@ -1,0 +1,418 @@
+#include "runtime/vulkan/gpu.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <cstring>
+
+#include "runtime/vulkan/nan_scan.h"
+
+namespace sconce
+{
+
+namespace
+{
+
+constexpr VkDeviceSize kStagingBytes = VkDeviceSize(16) << 20;
+
+bool isDepth(VkFormat format)
+{
+    return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D32_SFLOAT;
+}
+
+} // namespace
+
+void Buffer::swap(Buffer& other) noexcept
+{
+    std::swap(gpu, other.gpu);
+    std::swap(buffer, other.buffer);
+    std::swap(view, other.view);
+    std::swap(deviceAddress, other.deviceAddress);
+    std::swap(bytes, other.bytes);
+    std::swap(name, other.name);
+    std::swap(piece, other.piece);
+}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept
+{
+    Buffer(std::move(other)).swap(*this);
+    return *this;
+}
+
+Buffer::~Buffer()
+{
+    if (!gpu) return;
+    if (view) gpu->vk.DestroyBufferView(gpu->host.device, view, gpu->host.allocationCallbacks);
+    gpu->vk.DestroyBuffer(gpu->host.device, buffer, gpu->host.allocationCallbacks);
+    gpu->memory().release(piece);
+}
+
+void GpuImage::swap(GpuImage& other) noexcept
+{
+    std::swap(gpu, other.gpu);
+    std::swap(image, other.image);
+    std::swap(wholeView, other.wholeView);
+    std::swap(layerViews, other.layerViews);
+    std::swap(made, other.made);
+    std::swap(name, other.name);
+    std::swap(piece, other.piece);
+}
+
+GpuImage& GpuImage::operator=(GpuImage&& other) noexcept
+{
+    GpuImage(std::move(other)).swap(*this);
+    return *this;
+}
+
+GpuImage::~GpuImage()
+{
+    if (!gpu) return;
+    const VkDevice device = gpu->host.device;
+    const VkAllocationCallbacks* callbacks = gpu->host.allocationCallbacks;
+    for (VkImageView view : layerViews) gpu->vk.DestroyImageView(device, view, callbacks);
+    gpu->vk.DestroyImageView(device, wholeView, callbacks);
+    gpu->vk.DestroyImage(device, image, callbacks);
+    gpu->memory().release(piece);
+}
+
+VkImageAspectFlags GpuImage::aspect() const
+{
+    return isDepth(made.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+Error Gpu::failure(const char* call, VkResult result) const
+{
+    const bool memoryLost = result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
+    return {
+        memoryLost ? ErrorCode::outOfMemory : ErrorCode::deviceFailure,
+        std::string(call) + " failed on " + properties.deviceName + " with VkResult " + std::to_string(result) +
+            (memoryLost ? "; free memory or lower the resolution" : "; check the driver, and run with SCONCE_VALIDATION=1 for the cause")};
+}
+
+Result<std::unique_ptr<Gpu>> Gpu::create(const HostVulkan& host)
+{
+    if (!host.instance || !host.physicalDevice || !host.device || !host.queue || !host.getInstanceProcAddr)
+        return Error{ErrorCode::badArgument, "HostVulkan lacks an instance, a device, a queue or vkGetInstanceProcAddr; fill all of them"};
+    std::unique_ptr<Gpu> gpu(new Gpu(host));
+    const auto getDeviceProc = reinterpret_cast<PFN_vkGetDeviceProcAddr>(host.getInstanceProcAddr(host.instance, "vkGetDeviceProcAddr"));
+    const char* absent = nullptr;
+#define SCONCE_LOAD(name)                                                                                                                  \
+    gpu->vk.name = reinterpret_cast<PFN_vk##name>(getDeviceProc(host.device, "vk" #name));                                                 \
+    if (!gpu->vk.name) absent = "vk" #name;
+    SCONCE_DEVICE_FUNCTIONS(SCONCE_LOAD)
+#undef SCONCE_LOAD
+    if (absent) return Error{ErrorCode::missingFeature, std::string("The host's device has no ") + absent + "; create it for Vulkan 1.3"};
+    const auto instanceProc = [&](const char* name) { return host.getInstanceProcAddr(host.instance, name); };
+    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instanceProc("vkGetPhysicalDeviceProperties"))(host.physicalDevice,
+                                                                                                       &gpu->properties);
+    uint32_t familyCount = 0;
+    const auto families =
+        reinterpret_cast<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(instanceProc("vkGetPhysicalDeviceQueueFamilyProperties"));
+    families(host.physicalDevice, &familyCount, nullptr);
+    std::vector<VkQueueFamilyProperties> family(familyCount);
+    families(host.physicalDevice, &familyCount, family.data());
+    if (host.queueFamily >= familyCount)
+        return Error{ErrorCode::badArgument, "HostVulkan::queueFamily is " + std::to_string(host.queueFamily) + " but the device has " +
+                                                 std::to_string(familyCount) + " families"};
+    gpu->timestamps = family[host.queueFamily].timestampValidBits > 0;
+    gpu->pool = std::make_unique<GpuMemory>(gpu->host, gpu->vk);
+
+    VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    poolInfo.queueFamilyIndex = host.queueFamily;
+    VkResult result = gpu->vk.CreateCommandPool(host.device, &poolInfo, host.allocationCallbacks, &gpu->commandPool);
+    if (result != VK_SUCCESS) return gpu->failure("vkCreateCommandPool", result);
+    VkCommandBufferAllocateInfo commandInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    commandInfo.commandPool = gpu->commandPool;
+    commandInfo.commandBufferCount = 1;
+    result = gpu->vk.AllocateCommandBuffers(host.device, &commandInfo, &gpu->commands);
+    if (result != VK_SUCCESS) return gpu->failure("vkAllocateCommandBuffers", result);
+    const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    result = gpu->vk.CreateFence(host.device, &fenceInfo, host.allocationCallbacks, &gpu->fence);
+    if (result != VK_SUCCESS) return gpu->failure("vkCreateFence", result);
+    if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
+    {
+        auto scan = NanScan::create(*gpu);
+        if (!scan) return scan.error();
+        gpu->scan = std::move(*scan);
+    }
+    return gpu;
+}
+
+Gpu::Gpu(const HostVulkan& lent) : host(lent) {}
+
+Gpu::~Gpu()
+{
+    staging = Buffer();
+    scan.reset();
+    if (fence) vk.DestroyFence(host.device, fence, host.allocationCallbacks);
+    if (commandPool) vk.DestroyCommandPool(host.device, commandPool, host.allocationCallbacks);
+}
+
+Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage, MemoryUse use, const char* what)
+{
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    info.size = std::max<VkDeviceSize>(bytes, 16);
+    info.usage = extraUsage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    Buffer made;
+    made.gpu = this;
+    made.bytes = info.size;
+    made.name = what;
+    VkResult result = vk.CreateBuffer(host.device, &info, host.allocationCallbacks, &made.buffer);
+    if (result != VK_SUCCESS) return failure("vkCreateBuffer", result);
+    VkMemoryRequirements needs;
+    vk.GetBufferMemoryRequirements(host.device, made.buffer, &needs);
+    auto piece = pool->allocate(needs, use, true, what);
+    if (!piece) return piece.error();
+    made.piece = *piece;
+    result = vk.BindBufferMemory(host.device, made.buffer, made.piece.memory(), made.piece.offset);
+    if (result != VK_SUCCESS) return failure("vkBindBufferMemory", result);
+    VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
+    addressInfo.buffer = made.buffer;
+    made.deviceAddress = vk.GetBufferDeviceAddress(host.device, &addressInfo);
+    if (scan) NanScan::note(made);
+    return made;
+}
+
+Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
+{
+    const VkDeviceSize texels = buffer.size() / 16;
+    if (texels > properties.limits.maxTexelBufferElements)
+        return Error{ErrorCode::missingFeature, std::string(buffer.what()) + " need a buffer of " + std::to_string(texels) +
+                                                    " texels; the device allows " +
+                                                    std::to_string(properties.limits.maxTexelBufferElements) + "; bake fewer probes"};
+    VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+    info.buffer = buffer.handle();
+    info.format = format;
+    info.range = VK_WHOLE_SIZE;
+    const VkResult result = vk.CreateBufferView(host.device, &info, host.allocationCallbacks, &buffer.view);
+    return result == VK_SUCCESS ? success() : Status(failure("vkCreateBufferView", result));
+}
+
+Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
+{
+    const bool volume = desc.volume || desc.depth > 1;
+    VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+    info.imageType = volume ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+    info.format = desc.format;
+    info.extent = {desc.width, desc.height, desc.depth};
+    info.mipLevels = desc.mips;
+    info.arrayLayers = desc.layers;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = desc.usage | (scan ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0);
+    const VkPhysicalDeviceLimits& limits = properties.limits;
+    const uint32_t side = volume ? limits.maxImageDimension3D : limits.maxImageDimension2D;
+    if (std::max({desc.width, desc.height, desc.depth}) > side || desc.layers > limits.maxImageArrayLayers)
+        return Error{ErrorCode::missingFeature, std::string(what) + " needs an image of " + std::to_string(desc.width) + " x " +
+                                                    std::to_string(desc.height) + " x " + std::to_string(desc.depth) + " texels and " +
+                                                    std::to_string(desc.layers) + " layers; the device allows " + std::to_string(side) +
+                                                    " and " + std::to_string(limits.maxImageArrayLayers) + "; lower the resolution"};
+    GpuImage made;
+    made.gpu = this;
+    made.made = desc;
+    made.name = what;
+    VkResult result = vk.CreateImage(host.device, &info, host.allocationCallbacks, &made.image);
+    if (result != VK_SUCCESS) return failure("vkCreateImage", result);
+    VkMemoryRequirements needs;
+    vk.GetImageMemoryRequirements(host.device, made.image, &needs);
+    auto piece = pool->allocate(needs, MemoryUse::device, false, what);
+    if (!piece) return piece.error();
+    made.piece = *piece;
+    result = vk.BindImageMemory(host.device, made.image, made.piece.memory(), made.piece.offset);
+    if (result != VK_SUCCESS) return failure("vkBindImageMemory", result);
+    if (scan) NanScan::note(made);
+    const VkImageUsageFlags viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    if (!(desc.usage & viewable)) return made;
+    VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+    view.image = made.image;
+    view.viewType = volume ? VK_IMAGE_VIEW_TYPE_3D : desc.array || desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+    view.format = desc.format;
+    view.subresourceRange = {made.aspect(), 0, desc.mips, 0, desc.layers};
+    result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, &made.wholeView);
+    if (result != VK_SUCCESS) return failure("vkCreateImageView", result);
+    if (!desc.array) return made;
+    for (uint32_t layer = 0; layer < desc.layers; ++layer)
+    {
+        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.subresourceRange = {made.aspect(), 0, 1, layer, 1};
+        VkImageView one = VK_NULL_HANDLE;
+        result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, &one);
+        if (result != VK_SUCCESS) return failure("vkCreateImageView", result);
+        made.layerViews.push_back(one);
+    }
+    return made;
+}
+
+Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
+{
+    VkResult result = vk.ResetCommandPool(host.device, commandPool, 0);
+    if (result != VK_SUCCESS) return failure("vkResetCommandPool", result);
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    result = vk.BeginCommandBuffer(commands, &begin);
+    if (result != VK_SUCCESS) return failure("vkBeginCommandBuffer", result);
+    record(commands);
+    result = vk.EndCommandBuffer(commands);
+    if (result != VK_SUCCESS) return failure("vkEndCommandBuffer", result);
+    VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands;
+    result = vk.QueueSubmit(host.queue, 1, &info, fence);
+    if (result != VK_SUCCESS) return failure("vkQueueSubmit", result);
+    result = vk.WaitForFences(host.device, 1, &fence, VK_TRUE, UINT64_MAX);
+    if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
+    result = vk.ResetFences(host.device, 1, &fence);
+    if (result != VK_SUCCESS) return failure("vkResetFences", result);
+    return scan ? scan->findings() : success();
+}
+
+Status Gpu::ensureStaging()
+{
+    if (staging) return success();
+    auto made = makeBuffer(kStagingBytes, 0, MemoryUse::readback, "The staging buffer");
+    if (!made) return made.error();
+    staging = std::move(*made);
+    return success();
+}
+
+Status Gpu::upload(const Buffer& target, VkDeviceSize offset, std::span<const std::byte> bytes)
+{
+    assert(offset + bytes.size() <= target.size());
+    if (bytes.empty()) return success();
+    if (target.mapped())
+    {
+        std::memcpy(target.mapped() + offset, bytes.data(), bytes.size());
+        return success();
+    }
+    if (auto status = ensureStaging(); !status) return status;
+    for (VkDeviceSize done = 0; done < bytes.size(); done += kStagingBytes)
+    {
+        const VkDeviceSize part = std::min<VkDeviceSize>(kStagingBytes, bytes.size() - done);
+        std::memcpy(staging.mapped(), bytes.data() + done, part);
+        auto status = submit(
+            [&](VkCommandBuffer cmd)
+            {
+                const VkBufferCopy copy{0, offset + done, part};
+                vk.CmdCopyBuffer(cmd, staging.handle(), target.handle(), 1, &copy);
+                memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                              VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+            });
+        if (!status) return status;
+    }
+    return success();
+}
+
+Status Gpu::download(const Buffer& source, VkDeviceSize offset, std::span<std::byte> bytes)
+{
+    assert(offset + bytes.size() <= source.size());
+    if (auto status = ensureStaging(); !status) return status;
+    for (VkDeviceSize done = 0; done < bytes.size(); done += kStagingBytes)
+    {
+        const VkDeviceSize part = std::min<VkDeviceSize>(kStagingBytes, bytes.size() - done);
+        auto status = submit(
+            [&](VkCommandBuffer cmd)
+            {
+                memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                              VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+                const VkBufferCopy copy{offset + done, 0, part};
+                vk.CmdCopyBuffer(cmd, source.handle(), staging.handle(), 1, &copy);
+                memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                              VK_ACCESS_2_HOST_READ_BIT);
+            });
+        if (!status) return status;
+        std::memcpy(bytes.data() + done, staging.mapped(), part);
+    }
+    return success();
+}
+
+void memoryBarrier(const Gpu& gpu, VkCommandBuffer cmd, VkPipelineStageFlags2 from, VkAccessFlags2 written, VkPipelineStageFlags2 to,
+                   VkAccessFlags2 used)
+{
+    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = from;
+    barrier.srcAccessMask = written;
+    barrier.dstStageMask = to;
+    barrier.dstAccessMask = used;
+    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.memoryBarrierCount = 1;
+    info.pMemoryBarriers = &barrier;
+    gpu.vk.CmdPipelineBarrier2(cmd, &info);
+}
+
+void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, const ImageTransition& change)
+{
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = change.fromStage;
+    barrier.srcAccessMask = change.written;
+    barrier.dstStageMask = change.toStage;
+    barrier.dstAccessMask = change.used;
+    barrier.oldLayout = change.from;
+    barrier.newLayout = change.to;
+    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image.handle();
+    barrier.subresourceRange = {image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.imageMemoryBarrierCount = 1;
+    info.pImageMemoryBarriers = &barrier;
+    gpu.vk.CmdPipelineBarrier2(cmd, &info);
+}
+
+Result<GpuTimer> GpuTimer::create(Gpu& gpu, uint32_t maxScopes)
+{
+    GpuTimer timer;
+    timer.gpu = &gpu;
+    timer.names.resize(maxScopes);
+    if (!gpu.timestamps) return timer;
+    VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = 2 * maxScopes;
+    const VkResult result = gpu.vk.CreateQueryPool(gpu.host.device, &info, gpu.host.allocationCallbacks, &timer.queries);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreateQueryPool", result);
+    return timer;
+}
+
+GpuTimer::GpuTimer(GpuTimer&& other) noexcept
+    : gpu(std::exchange(other.gpu, nullptr)), queries(std::exchange(other.queries, VK_NULL_HANDLE)), names(std::move(other.names)),
+      used(std::exchange(other.used, 0))
+{
+}
+
+GpuTimer::~GpuTimer()
+{
+    if (queries) gpu->vk.DestroyQueryPool(gpu->host.device, queries, gpu->host.allocationCallbacks);
+}
+
+void GpuTimer::reset(VkCommandBuffer cmd)
+{
+    used = 0;
+    if (queries) gpu->vk.CmdResetQueryPool(cmd, queries, 0, 2 * uint32_t(names.size()));
+}
+
+void GpuTimer::begin(VkCommandBuffer cmd, const char* name)
+{
+    assert(used < names.size());
+    names[used] = name;
+    if (queries) gpu->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, 2 * used);
+}
+
+void GpuTimer::end(VkCommandBuffer cmd)
+{
+    if (queries) gpu->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, 2 * used + 1);
+    ++used;
+}
+
+std::vector<GpuTimer::Scope> GpuTimer::read() const
+{
+    std::vector<Scope> scopes;
+    if (!queries || used == 0) return scopes;
+    std::vector<uint64_t> ticks(2 * used);
+    gpu->vk.GetQueryPoolResults(gpu->host.device, queries, 0, 2 * used, ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
+                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    for (uint32_t i = 0; i < used; ++i)
+        scopes.push_back({names[i], double(ticks[2 * i + 1] - ticks[2 * i]) * double(gpu->properties.limits.timestampPeriod) * 1e-6});
+    return scopes;
+}
+
+} // namespace sconce

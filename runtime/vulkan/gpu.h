@@ -1,0 +1,189 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/vulkan/gpu_memory.h"
+
+namespace sconce
+{
+
+class Gpu;
+class NanScan;
+
+/// A buffer with a device address; move-only. Destroy it after the GPU has finished with it and before its Gpu.
+class Buffer
+{
+public:
+    Buffer() = default;
+    Buffer(Buffer&& other) noexcept { swap(other); }
+    Buffer& operator=(Buffer&& other) noexcept;
+    ~Buffer();
+
+    VkBuffer handle() const { return buffer; }
+    VkDeviceAddress address() const { return deviceAddress; }
+    VkDeviceSize size() const { return bytes; }
+    std::byte* mapped() const { return piece.mapped(); } // null for device memory
+    const char* what() const { return name; }            // as it was made with
+    VkBufferView texels() const { return view; }         // null unless made by makeTexelBuffer
+    explicit operator bool() const { return buffer != VK_NULL_HANDLE; }
+
+private:
+    friend class Gpu;
+    void swap(Buffer& other) noexcept;
+    Gpu* gpu = nullptr;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkBufferView view = VK_NULL_HANDLE;
+    VkDeviceAddress deviceAddress = 0;
+    VkDeviceSize bytes = 0;
+    const char* name = "";
+    GpuMemory::Piece piece;
+};
+
+struct ImageDesc
+{
+    VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+    uint32_t width = 1, height = 1, depth = 1; // texels; depth > 1, or volume: a 3D image
+    uint32_t layers = 1;
+    uint32_t mips = 1;
+    bool volume = false; // 3D even when depth is 1
+    bool array = false;  // the view is a 2D array even when there is one layer
+    VkImageUsageFlags usage = 0;
+};
+
+/// An image with one view of all of it; move-only, as Buffer.
+class GpuImage
+{
+public:
+    GpuImage() = default;
+    GpuImage(GpuImage&& other) noexcept { swap(other); }
+    GpuImage& operator=(GpuImage&& other) noexcept;
+    ~GpuImage();
+
+    VkImage handle() const { return image; }
+    VkImageView view() const { return wholeView; }
+    /// A view of one layer, for rendering into it; made with ImageDesc::array.
+    VkImageView layerView(uint32_t layer) const { return layerViews[layer]; }
+    const ImageDesc& desc() const { return made; }
+    const char* what() const { return name; }
+    VkImageAspectFlags aspect() const;
+    explicit operator bool() const { return image != VK_NULL_HANDLE; }
+
+private:
+    friend class Gpu;
+    void swap(GpuImage& other) noexcept;
+    Gpu* gpu = nullptr;
+    VkImage image = VK_NULL_HANDLE;
+    VkImageView wholeView = VK_NULL_HANDLE;
+    std::vector<VkImageView> layerViews;
+    ImageDesc made;
+    const char* name = "";
+    GpuMemory::Piece piece;
+};
+
+/// A host's device with its functions, the memory seam and one-shot submits. Everything made from it must go before it.
+class Gpu
+{
+public:
+    static Result<std::unique_ptr<Gpu>> create(const HostVulkan& host);
+    ~Gpu();
+    Gpu(const Gpu&) = delete;
+    Gpu& operator=(const Gpu&) = delete;
+
+    const HostVulkan host;
+    VulkanFunctions vk;
+    VkPhysicalDeviceProperties properties{};
+    bool timestamps = false; // the queue counts time
+
+    GpuMemory& memory() { return *pool; }
+
+    /// Null unless the environment says SCONCE_NAN_SCAN=1, see runtime/vulkan/nan_scan.h.
+    NanScan* nanScan() { return scan.get(); }
+
+    /// Storage, transfer and device address usage are always there. `what` names it in messages and must be a literal. Errors: outOfMemory,
+    /// deviceFailure.
+    Result<Buffer> makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage, MemoryUse use, const char* what);
+    Result<GpuImage> makeImage(const ImageDesc& desc, const char* what);
+
+    /// Records into a command buffer of our own, submits it to the host's queue and waits. With SCONCE_NAN_SCAN=1: fails with what was
+    /// found.
+    Status submit(const std::function<void(VkCommandBuffer)>& record);
+    /// Copies through a staging buffer of at most 16 MiB, which stays for the next copy.
+    Status upload(const Buffer& target, VkDeviceSize offset, std::span<const std::byte> bytes);
+    Status download(const Buffer& source, VkDeviceSize offset, std::span<std::byte> bytes);
+    template <class T> Result<Buffer> makeBufferWith(std::span<const T> values, VkBufferUsageFlags extraUsage, const char* what)
+    {
+        auto buffer = makeBuffer(std::max<size_t>(values.size_bytes(), 16), extraUsage, MemoryUse::device, what);
+        if (!buffer) return buffer.error();
+        if (auto status = upload(*buffer, 0, std::as_bytes(values)); !status) return status.error();
+        return buffer;
+    }
+    /// @param format  of texels of 16 bytes, read-only to shaders. A missingFeature error where the device allows fewer.
+    template <class T> Result<Buffer> makeTexelBuffer(std::span<const T> values, VkFormat format, const char* what)
+    {
+        auto buffer = makeBufferWith(values, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, what);
+        if (!buffer) return buffer.error();
+        if (auto status = makeTexelView(*buffer, format); !status) return status.error();
+        return buffer;
+    }
+    void releaseStaging() { staging = Buffer(); }
+
+    Error failure(const char* call, VkResult result) const;
+
+private:
+    explicit Gpu(const HostVulkan& lent);
+    Status ensureStaging();
+    Status makeTexelView(Buffer& buffer, VkFormat format);
+    std::unique_ptr<GpuMemory> pool;
+    VkCommandPool commandPool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    Buffer staging;
+    std::unique_ptr<NanScan> scan;
+};
+
+/// All memory writes of the first stages are visible to the second; enough wherever a pass follows a pass.
+void memoryBarrier(const Gpu& gpu, VkCommandBuffer cmd, VkPipelineStageFlags2 from, VkAccessFlags2 written, VkPipelineStageFlags2 to,
+                   VkAccessFlags2 used);
+
+struct ImageTransition
+{
+    VkImageLayout from = VK_IMAGE_LAYOUT_UNDEFINED, to = VK_IMAGE_LAYOUT_GENERAL;
+    VkPipelineStageFlags2 fromStage = VK_PIPELINE_STAGE_2_NONE, toStage = VK_PIPELINE_STAGE_2_NONE;
+    VkAccessFlags2 written = 0, used = 0;
+};
+void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, const ImageTransition& change);
+
+/// Milliseconds on the GPU of named stretches of a command buffer. Names must be literals. Recording never allocates.
+class GpuTimer
+{
+public:
+    static Result<GpuTimer> create(Gpu& gpu, uint32_t maxScopes);
+    GpuTimer(GpuTimer&& other) noexcept;
+    GpuTimer& operator=(GpuTimer&&) = delete;
+    ~GpuTimer();
+
+    void reset(VkCommandBuffer cmd); // first in a command buffer, outside rendering
+    void begin(VkCommandBuffer cmd, const char* name);
+    void end(VkCommandBuffer cmd);
+
+    struct Scope
+    {
+        const char* name;
+        double milliseconds;
+    };
+    /// After the command buffer has finished; empty when the queue has no timestamps.
+    std::vector<Scope> read() const;
+
+private:
+    GpuTimer() = default;
+    Gpu* gpu = nullptr;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    std::vector<const char*> names; // sized once
+    uint32_t used = 0;
+};
+
+} // namespace sconce

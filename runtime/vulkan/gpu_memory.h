@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+#include "runtime/vulkan/host_vulkan.h"
+#include "runtime/vulkan/vulkan_functions.h"
+
+namespace sconce
+{
+
+/// Where a resource lives: on the device only, or mapped for the host to write or to read.
+enum class MemoryUse
+{
+    device,
+    upload,
+    readback
+};
+
+/// The one seam through which all device memory is taken: blocks of 64 MiB cut first-fit, large resources alone. It keeps the budget
+/// itself, since software drivers hand out more than they have and a refusal must come before the machine swaps.
+class GpuMemory
+{
+public:
+    struct Block;
+    struct Piece // empty when block is null
+    {
+        Block* block = nullptr;
+        VkDeviceSize offset = 0;
+        VkDeviceSize size = 0;
+        VkDeviceMemory memory() const;
+        std::byte* mapped() const; // null for device memory
+    };
+
+    GpuMemory(const HostVulkan& host, const VulkanFunctions& vk);
+    ~GpuMemory();
+    GpuMemory(const GpuMemory&) = delete;
+    GpuMemory& operator=(const GpuMemory&) = delete;
+
+    /// Errors: outOfMemory, which names what was asked for, what is held and the budget.
+    Result<Piece> allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear, const char* what);
+    void release(Piece& piece);
+
+    uint64_t used() const { return heldBytes; } // bytes taken from the driver
+    uint64_t peak() const { return peakBytes; }
+    uint64_t budget() const { return budgetBytes; }
+
+private:
+    Result<Block*> addBlock(VkDeviceSize size, uint32_t type, bool linear, bool mapped, VkDeviceSize asked, const char* what);
+    int memoryType(uint32_t allowed, MemoryUse use) const;
+
+    const HostVulkan& host;
+    const VulkanFunctions& vk;
+    VkPhysicalDeviceMemoryProperties types{};
+    std::list<Block> blocks;
+    uint64_t heldBytes = 0;
+    uint64_t peakBytes = 0;
+    uint64_t budgetBytes = 0;
+};
+
+} // namespace sconce

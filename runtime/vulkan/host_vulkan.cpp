@@ -1,0 +1,354 @@
+#include "runtime/vulkan/host_vulkan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <span>
+
+namespace sconce
+{
+
+namespace
+{
+
+constexpr uint32_t kApiVersion = VK_API_VERSION_1_3;
+
+template <class F> F load(VkInstance instance, const char* name)
+{
+    return reinterpret_cast<F>(vkGetInstanceProcAddr(instance, name));
+}
+
+struct MessageLog
+{
+    std::mutex mutex;
+    std::vector<std::string> messages;
+};
+
+VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
+{
+    auto& log = *static_cast<MessageLog*>(user);
+    std::scoped_lock lock(log.mutex);
+    log.messages.emplace_back(data->pMessage);
+    std::fprintf(stderr, "validation: %s\n", data->pMessage);
+    return VK_FALSE;
+}
+
+/// The features the library needs, in one chain that is asked, checked and enabled.
+struct FeatureChain
+{
+    VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
+    VkPhysicalDeviceFeatures2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &v12};
+
+    FeatureChain() = default;
+    FeatureChain(const FeatureChain&) = delete;
+    FeatureChain& operator=(const FeatureChain&) = delete;
+
+    struct Named
+    {
+        VkBool32* value;
+        const char* name;
+    };
+    std::vector<Named> needed()
+    {
+        return {{&v12.bufferDeviceAddress, "bufferDeviceAddress"},
+                {&v12.scalarBlockLayout, "scalarBlockLayout"},
+                {&v13.dynamicRendering, "dynamicRendering"},
+                {&v13.synchronization2, "synchronization2"}};
+    }
+};
+
+const char* kindName(VkPhysicalDeviceType type)
+{
+    switch (type)
+    {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return "software";
+    default:
+        return "other";
+    }
+}
+
+int preference(VkPhysicalDeviceType type)
+{
+    switch (type)
+    {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+std::string versionText(uint32_t version)
+{
+    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+           std::to_string(VK_API_VERSION_PATCH(version));
+}
+
+Error vulkanError(const char* call, VkResult result, const char* remedy)
+{
+    return {ErrorCode::deviceFailure, std::string(call) + " failed with VkResult " + std::to_string(result) + "; " + remedy};
+}
+
+std::vector<VkPhysicalDevice> devicesOf(VkInstance instance)
+{
+    auto enumerate = load<PFN_vkEnumeratePhysicalDevices>(instance, "vkEnumeratePhysicalDevices");
+    uint32_t count = 0;
+    enumerate(instance, &count, nullptr);
+    std::vector<VkPhysicalDevice> devices(count);
+    enumerate(instance, &count, devices.data());
+    devices.resize(count);
+    return devices;
+}
+
+VkPhysicalDeviceProperties propertiesOf(VkInstance instance, VkPhysicalDevice device)
+{
+    VkPhysicalDeviceProperties properties;
+    load<PFN_vkGetPhysicalDeviceProperties>(instance, "vkGetPhysicalDeviceProperties")(device, &properties);
+    return properties;
+}
+
+/// The first queue family with graphics and compute, or -1.
+int usableFamily(PFN_vkGetInstanceProcAddr getProc, VkInstance instance, VkPhysicalDevice device, bool& timestamps)
+{
+    auto query =
+        reinterpret_cast<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(getProc(instance, "vkGetPhysicalDeviceQueueFamilyProperties"));
+    uint32_t count = 0;
+    query(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    query(device, &count, families.data());
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        const VkQueueFlags both = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+        if ((families[i].queueFlags & both) != both) continue;
+        timestamps = families[i].timestampValidBits > 0;
+        return int(i);
+    }
+    return -1;
+}
+
+Result<VkInstance> makeInstance(bool validation, MessageLog* log)
+{
+    VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+    application.pApplicationName = "sconce";
+    application.apiVersion = kApiVersion;
+    const char* layer = "VK_LAYER_KHRONOS_validation";
+    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+    messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    messenger.pfnUserCallback = keepMessage;
+    messenger.pUserData = log;
+    VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messenger};
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = enabled;
+    VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+    info.pApplicationInfo = &application;
+    if (validation)
+    {
+        info.pNext = &features;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = &layer;
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = &extension;
+    }
+    VkInstance instance = VK_NULL_HANDLE;
+    const VkResult result = load<PFN_vkCreateInstance>(nullptr, "vkCreateInstance")(&info, nullptr, &instance);
+    if (result == VK_ERROR_LAYER_NOT_PRESENT)
+        return Error{ErrorCode::missingFeature,
+                     "The layer VK_LAYER_KHRONOS_validation is not installed; install the Vulkan validation layers or "
+                     "run without validation"};
+    if (result != VK_SUCCESS) return vulkanError("vkCreateInstance", result, "check that a Vulkan driver is installed");
+    return instance;
+}
+
+Result<VkPhysicalDevice> chooseDevice(VkInstance instance, const std::string& wanted)
+{
+    const std::vector<VkPhysicalDevice> devices = devicesOf(instance);
+    if (devices.empty())
+        return Error{ErrorCode::missingFeature, "No Vulkan device was found; install a Vulkan driver (Mesa has a software one)"};
+    size_t index = 0;
+    const auto [end, fault] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+    const bool isIndex = !wanted.empty() && fault == std::errc() && end == wanted.data() + wanted.size();
+    VkPhysicalDevice best = VK_NULL_HANDLE;
+    int bestPreference = -1;
+    std::string names;
+    for (size_t i = 0; i < devices.size(); ++i)
+    {
+        const VkPhysicalDeviceProperties properties = propertiesOf(instance, devices[i]);
+        names += (i ? ", " : "") + std::to_string(i) + " " + properties.deviceName;
+        if (isIndex ? i != index : !wanted.empty() && !std::strstr(properties.deviceName, wanted.c_str())) continue;
+        if (preference(properties.deviceType) <= bestPreference) continue;
+        best = devices[i];
+        bestPreference = preference(properties.deviceType);
+    }
+    if (!best) return Error{ErrorCode::badArgument, "No Vulkan device matches '" + wanted + "'; there are: " + names};
+    return best;
+}
+
+} // namespace
+
+std::vector<std::string> missingFeatures(PFN_vkGetInstanceProcAddr getProc, VkInstance instance, VkPhysicalDevice device)
+{
+    std::vector<std::string> missing;
+    VkPhysicalDeviceProperties properties;
+    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(getProc(instance, "vkGetPhysicalDeviceProperties"))(device, &properties);
+    bool timestamps = false;
+    if (usableFamily(getProc, instance, device, timestamps) < 0) missing.push_back("a queue family with graphics and compute");
+    if (properties.apiVersion < kApiVersion)
+    {
+        missing.push_back("Vulkan 1.3 (it has " + versionText(properties.apiVersion) + ")");
+        return missing; // the 1.3 feature struct is unknown to it
+    }
+    FeatureChain features;
+    reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(getProc(instance, "vkGetPhysicalDeviceFeatures2"))(device, &features.all);
+    for (const auto& feature : features.needed())
+        if (!*feature.value) missing.push_back(feature.name);
+    return missing;
+}
+
+struct OwnDevice::State
+{
+    HostVulkan host;
+    MessageLog log; // outlives the instance, whose messenger writes to it
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    bool validation = false;
+
+    ~State()
+    {
+        if (host.device) load<PFN_vkDestroyDevice>(host.instance, "vkDestroyDevice")(host.device, nullptr);
+        if (messenger)
+            load<PFN_vkDestroyDebugUtilsMessengerEXT>(host.instance, "vkDestroyDebugUtilsMessengerEXT")(host.instance, messenger, nullptr);
+        if (host.instance) load<PFN_vkDestroyInstance>(host.instance, "vkDestroyInstance")(host.instance, nullptr);
+    }
+};
+
+OwnDevice::OwnDevice(std::unique_ptr<State> made) : state(std::move(made)) {}
+OwnDevice::OwnDevice(OwnDevice&&) noexcept = default;
+OwnDevice& OwnDevice::operator=(OwnDevice&&) noexcept = default;
+OwnDevice::~OwnDevice() = default;
+const HostVulkan& OwnDevice::host() const
+{
+    return state->host;
+}
+bool OwnDevice::validating() const
+{
+    return state->validation;
+}
+std::string OwnDevice::name() const
+{
+    return propertiesOf(state->host.instance, state->host.physicalDevice).deviceName;
+}
+
+std::vector<std::string> OwnDevice::validationMessages() const
+{
+    std::scoped_lock lock(state->log.mutex);
+    return state->log.messages;
+}
+
+Result<OwnDevice> OwnDevice::create()
+{
+    return create(Desc{});
+}
+
+Result<OwnDevice> OwnDevice::create(const Desc& desc)
+{
+    auto state = std::make_unique<State>();
+    const char* wish = std::getenv("SCONCE_VALIDATION");
+    state->validation = desc.validation || (wish && std::strcmp(wish, "1") == 0);
+    auto instance = makeInstance(state->validation, &state->log);
+    if (!instance) return instance.error();
+    HostVulkan& host = state->host;
+    host.instance = *instance;
+    host.getInstanceProcAddr = vkGetInstanceProcAddr;
+    host.memoryBudget = desc.memoryBudget;
+    if (state->validation)
+    {
+        VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+        info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+        info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+        info.pfnUserCallback = keepMessage;
+        info.pUserData = &state->log;
+        load<PFN_vkCreateDebugUtilsMessengerEXT>(host.instance, "vkCreateDebugUtilsMessengerEXT")(host.instance, &info, nullptr,
+                                                                                                  &state->messenger);
+    }
+    auto chosen = chooseDevice(host.instance, desc.device);
+    if (!chosen) return chosen.error();
+    host.physicalDevice = *chosen;
+    const std::vector<std::string> missing = missingFeatures(vkGetInstanceProcAddr, host.instance, *chosen);
+    if (!missing.empty())
+    {
+        std::string list;
+        for (const std::string& name : missing) list += (list.empty() ? "" : ", ") + name;
+        return Error{ErrorCode::missingFeature, std::string("The device ") + propertiesOf(host.instance, *chosen).deviceName + " lacks " +
+                                                    list + "; update its driver or choose another device"};
+    }
+    bool timestamps = false;
+    host.queueFamily = uint32_t(usableFamily(vkGetInstanceProcAddr, host.instance, *chosen, timestamps));
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+    queue.queueFamilyIndex = host.queueFamily;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    FeatureChain features;
+    for (const auto& feature : features.needed()) *feature.value = VK_TRUE;
+    VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.all};
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    const VkResult result = load<PFN_vkCreateDevice>(host.instance, "vkCreateDevice")(host.physicalDevice, &info, nullptr, &host.device);
+    if (result != VK_SUCCESS) return vulkanError("vkCreateDevice", result, "check the driver with vulkaninfo");
+    load<PFN_vkGetDeviceQueue>(host.instance, "vkGetDeviceQueue")(host.device, host.queueFamily, 0, &host.queue);
+    return OwnDevice(std::move(state));
+}
+
+Result<std::vector<DeviceSummary>> deviceSummary()
+{
+    auto instance = makeInstance(false, nullptr);
+    if (!instance) return instance.error();
+    std::vector<DeviceSummary> all;
+    for (VkPhysicalDevice device : devicesOf(*instance))
+    {
+        VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+        VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, &subgroup};
+        VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
+        load<PFN_vkGetPhysicalDeviceProperties2>(*instance, "vkGetPhysicalDeviceProperties2")(device, &properties);
+        VkPhysicalDeviceMemoryProperties memory;
+        load<PFN_vkGetPhysicalDeviceMemoryProperties>(*instance, "vkGetPhysicalDeviceMemoryProperties")(device, &memory);
+        DeviceSummary summary;
+        summary.name = properties.properties.deviceName;
+        summary.kind = kindName(properties.properties.deviceType);
+        summary.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+        summary.apiVersion = versionText(properties.properties.apiVersion);
+        for (const VkMemoryHeap& heap : std::span(memory.memoryHeaps, memory.memoryHeapCount))
+            if (heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) summary.heapBytes = std::max<uint64_t>(summary.heapBytes, heap.size);
+        summary.maxImageSize2D = properties.properties.limits.maxImageDimension2D;
+        summary.maxImageLayers = properties.properties.limits.maxImageArrayLayers;
+        summary.maxStorageBuffer = properties.properties.limits.maxStorageBufferRange;
+        summary.subgroupSize = subgroup.subgroupSize;
+        usableFamily(vkGetInstanceProcAddr, *instance, device, summary.timestamps);
+        summary.missing = missingFeatures(vkGetInstanceProcAddr, *instance, device);
+        all.push_back(std::move(summary));
+    }
+    load<PFN_vkDestroyInstance>(*instance, "vkDestroyInstance")(*instance, nullptr);
+    return all;
+}
+
+} // namespace sconce

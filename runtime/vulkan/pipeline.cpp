@@ -1,0 +1,287 @@
+#include "runtime/vulkan/pipeline.h"
+
+#include <cassert>
+
+namespace sconce
+{
+
+void DescriptorSet::swap(DescriptorSet& other) noexcept
+{
+    std::swap(gpu, other.gpu);
+    std::swap(setLayout, other.setLayout);
+    std::swap(pool, other.pool);
+    std::swap(set, other.set);
+    std::swap(bindings, other.bindings);
+}
+
+DescriptorSet& DescriptorSet::operator=(DescriptorSet&& other) noexcept
+{
+    DescriptorSet(std::move(other)).swap(*this);
+    return *this;
+}
+
+DescriptorSet::~DescriptorSet()
+{
+    if (!gpu) return;
+    if (pool) gpu->vk.DestroyDescriptorPool(gpu->host.device, pool, gpu->host.allocationCallbacks);
+    if (setLayout) gpu->vk.DestroyDescriptorSetLayout(gpu->host.device, setLayout, gpu->host.allocationCallbacks);
+}
+
+Result<DescriptorSet> DescriptorSet::create(Gpu& gpu, std::span<const Binding> bindings)
+{
+    DescriptorSet made;
+    made.gpu = &gpu;
+    made.bindings.assign(bindings.begin(), bindings.end());
+    std::vector<VkDescriptorSetLayoutBinding> layout;
+    std::vector<VkDescriptorPoolSize> sizes;
+    for (const Binding& binding : bindings)
+    {
+        layout.push_back({binding.binding, binding.type, 1, binding.stages, nullptr});
+        sizes.push_back({binding.type, 1});
+    }
+    VkDescriptorSetLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+    layoutInfo.bindingCount = uint32_t(layout.size());
+    layoutInfo.pBindings = layout.data();
+    VkResult result = gpu.vk.CreateDescriptorSetLayout(gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks, &made.setLayout);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorSetLayout", result);
+    VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+    poolInfo.maxSets = 1;
+    poolInfo.poolSizeCount = uint32_t(sizes.size());
+    poolInfo.pPoolSizes = sizes.data();
+    result = gpu.vk.CreateDescriptorPool(gpu.host.device, &poolInfo, gpu.host.allocationCallbacks, &made.pool);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorPool", result);
+    VkDescriptorSetAllocateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    setInfo.descriptorPool = made.pool;
+    setInfo.descriptorSetCount = 1;
+    setInfo.pSetLayouts = &made.setLayout;
+    result = gpu.vk.AllocateDescriptorSets(gpu.host.device, &setInfo, &made.set);
+    if (result != VK_SUCCESS) return gpu.failure("vkAllocateDescriptorSets", result);
+    return made;
+}
+
+VkDescriptorType DescriptorSet::typeOf(uint32_t binding) const
+{
+    for (const Binding& one : bindings)
+        if (one.binding == binding) return one.type;
+    assert(false && "the set has no such binding");
+    return VK_DESCRIPTOR_TYPE_MAX_ENUM;
+}
+
+void DescriptorSet::write(uint32_t binding, const Buffer& buffer)
+{
+    const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
+    const VkBufferView view = buffer.texels();
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    write.dstSet = set;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = typeOf(binding);
+    write.pBufferInfo = &info;
+    write.pTexelBufferView = &view;
+    gpu->vk.UpdateDescriptorSets(gpu->host.device, 1, &write, 0, nullptr);
+}
+
+void DescriptorSet::write(uint32_t binding, VkImageView view, VkImageLayout imageLayout, VkSampler sampler)
+{
+    const VkDescriptorImageInfo info{sampler, view, imageLayout};
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    write.dstSet = set;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = typeOf(binding);
+    write.pImageInfo = &info;
+    gpu->vk.UpdateDescriptorSets(gpu->host.device, 1, &write, 0, nullptr);
+}
+
+namespace
+{
+
+/// A shader module for as long as a pipeline is being made.
+struct Module
+{
+    Gpu& gpu;
+    VkShaderModule handle = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+
+    Module(Gpu& owner, Spirv code) : gpu(owner)
+    {
+        if (code.empty()) return;
+        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+        info.codeSize = code.size_bytes();
+        info.pCode = code.data();
+        result = gpu.vk.CreateShaderModule(gpu.host.device, &info, gpu.host.allocationCallbacks, &handle);
+    }
+    Module(const Module&) = delete;
+    Module& operator=(const Module&) = delete;
+    ~Module()
+    {
+        if (handle) gpu.vk.DestroyShaderModule(gpu.host.device, handle, gpu.host.allocationCallbacks);
+    }
+};
+
+struct Specialization
+{
+    std::vector<VkSpecializationMapEntry> entries;
+    VkSpecializationInfo info{};
+
+    explicit Specialization(std::span<const uint32_t> values)
+    {
+        for (uint32_t i = 0; i < values.size(); ++i) entries.push_back({i, i * 4, 4});
+        info = {uint32_t(entries.size()), entries.data(), values.size_bytes(), values.data()};
+    }
+};
+
+VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, const Module& module, const Specialization& specialization)
+{
+    VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
+    info.stage = stage;
+    info.module = module.handle;
+    info.pName = "main";
+    info.pSpecializationInfo = specialization.entries.empty() ? nullptr : &specialization.info;
+    return info;
+}
+
+} // namespace
+
+void Pipeline::swap(Pipeline& other) noexcept
+{
+    std::swap(gpu, other.gpu);
+    std::swap(pipeline, other.pipeline);
+    std::swap(pipelineLayout, other.pipelineLayout);
+    std::swap(bindPoint, other.bindPoint);
+    std::swap(stages, other.stages);
+}
+
+Pipeline& Pipeline::operator=(Pipeline&& other) noexcept
+{
+    Pipeline(std::move(other)).swap(*this);
+    return *this;
+}
+
+Pipeline::~Pipeline()
+{
+    if (!gpu) return;
+    if (pipeline) gpu->vk.DestroyPipeline(gpu->host.device, pipeline, gpu->host.allocationCallbacks);
+    if (pipelineLayout) gpu->vk.DestroyPipelineLayout(gpu->host.device, pipelineLayout, gpu->host.allocationCallbacks);
+}
+
+Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes)
+{
+    const VkPushConstantRange range{stages, 0, pushBytes};
+    VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+    info.setLayoutCount = uint32_t(sets.size());
+    info.pSetLayouts = sets.data();
+    info.pushConstantRangeCount = pushBytes > 0 ? 1 : 0;
+    info.pPushConstantRanges = &range;
+    const VkResult result = gpu->vk.CreatePipelineLayout(gpu->host.device, &info, gpu->host.allocationCallbacks, &pipelineLayout);
+    if (result != VK_SUCCESS) return gpu->failure("vkCreatePipelineLayout", result);
+    return success();
+}
+
+Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
+                                   std::span<const uint32_t> specialization)
+{
+    Pipeline made;
+    made.gpu = &gpu;
+    made.stages = VK_SHADER_STAGE_COMPUTE_BIT;
+    if (auto status = made.makeLayout(sets, pushBytes); !status) return status.error();
+    const Module module(gpu, shader);
+    if (module.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", module.result);
+    const Specialization constants(specialization);
+    VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+    info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, constants);
+    info.layout = made.pipelineLayout;
+    const VkResult result =
+        gpu.vk.CreateComputePipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, &made.pipeline);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreateComputePipelines", result);
+    return made;
+}
+
+Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
+{
+    Pipeline made;
+    made.gpu = &gpu;
+    made.bindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    made.stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (auto status = made.makeLayout(desc.sets, desc.pushBytes); !status) return status.error();
+    const Module vertex(gpu, desc.vertex), fragment(gpu, desc.fragment);
+    if (vertex.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", vertex.result);
+    if (fragment.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", fragment.result);
+    const Specialization constants(desc.specialization);
+    const VkPipelineShaderStageCreateInfo stages[] = {stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants),
+                                                      stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants)};
+    VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+    input.vertexBindingDescriptionCount = uint32_t(desc.vertexBindings.size());
+    input.pVertexBindingDescriptions = desc.vertexBindings.data();
+    input.vertexAttributeDescriptionCount = uint32_t(desc.vertexAttributes.size());
+    input.pVertexAttributeDescriptions = desc.vertexAttributes.data();
+    VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
+    viewport.viewportCount = viewport.scissorCount = 1;
+    VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster.lineWidth = 1.0f;
+    VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+    multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+    depth.depthTestEnable = depth.depthWriteEnable = desc.depthFormat != VK_FORMAT_UNDEFINED;
+    depth.depthCompareOp = desc.depthCompare;
+    std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorFormats.size());
+    for (auto& blend : blends) blend.colorWriteMask = 0xf;
+    VkPipelineColorBlendStateCreateInfo color{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+    color.attachmentCount = uint32_t(blends.size());
+    color.pAttachments = blends.data();
+    const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE};
+    VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
+    dynamic.dynamicStateCount = uint32_t(std::size(dynamics));
+    dynamic.pDynamicStates = dynamics;
+    VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
+    rendering.colorAttachmentCount = uint32_t(desc.colorFormats.size());
+    rendering.pColorAttachmentFormats = desc.colorFormats.data();
+    rendering.depthAttachmentFormat = desc.depthFormat;
+    VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
+    info.stageCount = desc.fragment.empty() ? 1 : 2;
+    info.pStages = stages;
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &color;
+    info.pDynamicState = &dynamic;
+    info.layout = made.pipelineLayout;
+    const VkResult result =
+        gpu.vk.CreateGraphicsPipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, &made.pipeline);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreateGraphicsPipelines", result);
+    return made;
+}
+
+void Pipeline::bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets) const
+{
+    gpu->vk.CmdBindPipeline(cmd, bindPoint, pipeline);
+    if (!sets.empty()) gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, pipelineLayout, 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
+}
+
+Sampler& Sampler::operator=(Sampler&& other) noexcept
+{
+    Sampler(std::move(other)).swap(*this);
+    return *this;
+}
+
+Sampler::~Sampler()
+{
+    if (gpu && sampler) gpu->vk.DestroySampler(gpu->host.device, sampler, gpu->host.allocationCallbacks);
+}
+
+Result<Sampler> Sampler::create(Gpu& gpu, const VkSamplerCreateInfo& info)
+{
+    Sampler made;
+    made.gpu = &gpu;
+    const VkResult result = gpu.vk.CreateSampler(gpu.host.device, &info, gpu.host.allocationCallbacks, &made.sampler);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreateSampler", result);
+    return made;
+}
+
+} // namespace sconce

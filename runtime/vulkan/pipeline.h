@@ -1,0 +1,110 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/vulkan/gpu.h"
+
+namespace sconce
+{
+
+/// One descriptor set with its layout and pool. Write before it is first bound; the written resources must outlive its use.
+class DescriptorSet
+{
+public:
+    struct Binding
+    {
+        uint32_t binding;
+        VkDescriptorType type;
+        VkShaderStageFlags stages = VK_SHADER_STAGE_ALL;
+    };
+    static Result<DescriptorSet> create(Gpu& gpu, std::span<const Binding> bindings);
+    DescriptorSet() = default;
+    DescriptorSet(DescriptorSet&& other) noexcept { swap(other); }
+    DescriptorSet& operator=(DescriptorSet&& other) noexcept;
+    ~DescriptorSet();
+
+    VkDescriptorSetLayout layout() const { return setLayout; }
+    VkDescriptorSet handle() const { return set; }
+    void write(uint32_t binding, const Buffer& buffer); // a texel buffer by its view
+    void write(uint32_t binding, VkImageView view, VkImageLayout imageLayout, VkSampler sampler = VK_NULL_HANDLE);
+
+private:
+    void swap(DescriptorSet& other) noexcept;
+    VkDescriptorType typeOf(uint32_t binding) const;
+    Gpu* gpu = nullptr;
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    std::vector<Binding> bindings;
+};
+
+using Spirv = std::span<const uint32_t>;
+
+/// A compute or graphics pipeline with its layout; move-only.
+class Pipeline
+{
+public:
+    /// @param specialization values of constant ids 0, 1, ..., 32 bits each
+    static Result<Pipeline> compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
+                                    std::span<const uint32_t> specialization = {});
+
+    struct Graphics
+    {
+        Spirv vertex;
+        Spirv fragment; // empty: depth only
+        std::span<const VkDescriptorSetLayout> sets;
+        uint32_t pushBytes = 0;
+        std::span<const VkVertexInputBindingDescription> vertexBindings;
+        std::span<const VkVertexInputAttributeDescription> vertexAttributes;
+        std::span<const VkFormat> colorFormats;
+        VkFormat depthFormat = VK_FORMAT_UNDEFINED;
+        VkCompareOp depthCompare = VK_COMPARE_OP_GREATER; // depth 0 is infinitely far
+        std::span<const uint32_t> specialization;         // of both stages
+    };
+    static Result<Pipeline> graphics(Gpu& gpu, const Graphics& desc);
+
+    Pipeline() = default;
+    Pipeline(Pipeline&& other) noexcept { swap(other); }
+    Pipeline& operator=(Pipeline&& other) noexcept;
+    ~Pipeline();
+
+    VkPipeline handle() const { return pipeline; }
+    VkPipelineLayout layout() const { return pipelineLayout; }
+    explicit operator bool() const { return pipeline != VK_NULL_HANDLE; }
+
+    void bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets = {}) const;
+    template <class T> void push(VkCommandBuffer cmd, const T& values) const
+    {
+        static_assert(sizeof(T) % 4 == 0 && sizeof(T) <= 128, "push constants are at most 128 bytes everywhere");
+        gpu->vk.CmdPushConstants(cmd, pipelineLayout, stages, 0, sizeof(T), &values);
+    }
+
+private:
+    void swap(Pipeline& other) noexcept;
+    Status makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes);
+    Gpu* gpu = nullptr;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
+    VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
+    VkShaderStageFlags stages = 0;
+};
+
+/// A sampler; move-only.
+class Sampler
+{
+public:
+    static Result<Sampler> create(Gpu& gpu, const VkSamplerCreateInfo& info);
+    Sampler() = default;
+    Sampler(Sampler&& other) noexcept { swap(other); }
+    Sampler& operator=(Sampler&& other) noexcept;
+    ~Sampler();
+    VkSampler handle() const { return sampler; }
+
+private:
+    void swap(Sampler& other) noexcept { std::swap(gpu, other.gpu), std::swap(sampler, other.sampler); }
+    Gpu* gpu = nullptr;
+    VkSampler sampler = VK_NULL_HANDLE;
+};
+
+} // namespace sconce

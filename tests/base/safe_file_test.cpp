@@ -1,0 +1,78 @@
+#include "base/safe_file.h"
+
+#include <sys/stat.h>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/files.h"
+
+namespace sconce
+{
+namespace
+{
+
+using testing_support::readText;
+using testing_support::TestFolder;
+
+size_t filesIn(const TestFolder& folder)
+{
+    size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path)) ++count;
+    return count;
+}
+
+TEST(SafeFile, IsThereWholeAfterCommitAndNotBefore)
+{
+    const TestFolder folder;
+    const std::string name = folder / "a.txt";
+    ASSERT_TRUE(writeText(name, "old"));
+    {
+        auto file = SafeFile::create(name);
+        ASSERT_TRUE(file);
+        const std::string text = "new";
+        ASSERT_TRUE(file->append(std::as_bytes(std::span(text))));
+        EXPECT_EQ(readText(name), "old");
+    } // never committed
+    EXPECT_EQ(readText(name), "old");
+    EXPECT_EQ(filesIn(folder), 1u) << "a temporary file was left";
+    ASSERT_TRUE(writeText(name, std::string(100000, 'x')));
+    EXPECT_EQ(readText(name), std::string(100000, 'x'));
+    EXPECT_EQ(filesIn(folder), 1u);
+}
+
+TEST(SafeFile, HasTheModeThatTheMaskGives)
+{
+    const TestFolder folder;
+    const mode_t mask = umask(027);
+    const Status written = writeText(folder / "a.txt", "text");
+    umask(mask);
+    ASSERT_TRUE(written);
+    struct stat state = {};
+    ASSERT_EQ(stat((folder / "a.txt").c_str(), &state), 0);
+    EXPECT_EQ(state.st_mode & 0777u, 0640u);
+}
+
+TEST(SafeFile, SaysWhereItCannotWrite)
+{
+    const TestFolder folder;
+    const Status nowhere = writeText(folder / "none/a.txt", "text");
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().code, ErrorCode::fileError);
+    EXPECT_NE(nowhere.error().message.find("none"), std::string::npos) << nowhere.error().message;
+    const Status aFolder = writeText(folder.path, "text");
+    ASSERT_FALSE(aFolder);
+    EXPECT_NE(aFolder.error().message.find("folder"), std::string::npos) << aFolder.error().message;
+}
+
+TEST(SafeFile, ReplacesALinkAndNotWhatItPointsTo)
+{
+    const TestFolder folder;
+    ASSERT_TRUE(writeText(folder / "target", "kept"));
+    std::filesystem::create_symlink(folder / "target", folder / "link");
+    ASSERT_TRUE(writeText(folder / "link", "text"));
+    EXPECT_EQ(readText(folder / "link"), "text");
+    EXPECT_EQ(readText(folder / "target"), "kept");
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,73 @@
+#include "bench/sweep/keys.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "scene/builtin_scenes.h"
+#include "tests/support/files.h"
+
+namespace sconce
+{
+namespace
+{
+
+using testing_support::TestFolder;
+using testing_support::writeText;
+
+// XXH3_64bits("") of the algorithm's published test vectors (Collet, xxHash specification): seed 0, no input.
+TEST(Keys, AnEmptyFileHasThePublishedHashOfNothing)
+{
+    const TestFolder folder;
+    writeText(folder / "empty", "");
+    const auto key = keyOfFile(folder / "empty");
+    ASSERT_TRUE(key);
+    EXPECT_EQ(*key, "2d06800538d394c2");
+}
+
+TEST(Keys, AnyByteOfAFileCounts)
+{
+    const TestFolder folder;
+    std::string text(3000000, 'x'); // more than is read at once
+    std::set<std::string> keys;
+    for (const size_t place : {size_t(0), size_t(1048575), size_t(1048576), text.size() - 1})
+    {
+        std::string changed = text;
+        changed[place] = 'y';
+        writeText(folder / "a", changed);
+        keys.insert(*keyOfFile(folder / "a"));
+    }
+    writeText(folder / "a", text);
+    keys.insert(*keyOfFile(folder / "a"));
+    EXPECT_EQ(keys.size(), 5u);
+    const auto missing = keyOfFile(folder / "none");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::fileError);
+}
+
+// The program that runs this test is such a build: its key is that of its file.
+TEST(Keys, TheKeyOfABuildIsThatOfItsProgram)
+{
+    const auto build = keyOfThisBuild();
+    ASSERT_TRUE(build) << build.error().message;
+    EXPECT_EQ(*build, *keyOfFile(std::filesystem::read_symlink("/proc/self/exe")));
+}
+
+TEST(Keys, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)
+{
+    const auto scene = makeBuiltinScene("cornell");
+    ASSERT_TRUE(scene);
+    Scene renamed = *scene, moved = *scene, painted = *scene, lit = *scene;
+    renamed.name = "another";
+    moved.positions[0].x += 1e-6f;
+    painted.materials[0].roughness += 1e-6f;
+    lit.sky.x += 1e-6f;
+    const std::string key = keyOf(*scene);
+    EXPECT_EQ(keyOf(renamed), key);
+    EXPECT_NE(keyOf(moved), key);
+    EXPECT_NE(keyOf(painted), key);
+    EXPECT_NE(keyOf(lit), key);
+}
+
+} // namespace
+} // namespace sconce

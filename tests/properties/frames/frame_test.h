@@ -1,0 +1,43 @@
+#pragma once
+
+#include "runtime/bake/bake.h"
+#include "runtime/scene/scene_renderer.h"
+#include "tests/support/device.h"
+
+namespace sconce::testing_support
+{
+
+/// Draws frames of a scene with a light field that is baked for it.
+class FrameTest : public DeviceTest
+{
+protected:
+    static RenderSettings settingsOf(uint32_t side)
+    {
+        RenderSettings settings;
+        settings.width = settings.height = side;
+        return settings;
+    }
+
+    Result<FieldData> bakeField(const Scene& scene, std::span<const vec3> probes, uint32_t resolution = 128, uint32_t bounces = 2)
+    {
+        BakeSettings bake;
+        bake.resolution = resolution;
+        bake.bounces = bounces;
+        BakeReport report;
+        return bakeLightField(gpu().host, scene, probes, bake, {}, report);
+    }
+
+    /// @param drawn  what is in the picture; it may differ from what the field was baked from
+    Result<RenderedFrame> drawWith(const FieldData& field, const Scene& drawn, const RenderSettings& settings)
+    {
+        auto device = DeviceScene::create(gpu(), drawn, field.info);
+        if (!device) return device.error();
+        auto light = LightField::create(gpu(), field);
+        if (!light) return light.error();
+        auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
+        if (!renderer) return renderer.error();
+        return (*renderer)->render(drawn.cameras.front());
+    }
+};
+
+} // namespace sconce::testing_support

@@ -1,0 +1,130 @@
+// The filter over time: still pictures converge, moving ones neither flicker nor ghost, a cut forgets.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "scene/builtin_scenes.h"
+#include "tests/properties/frames/frame_test.h"
+#include "tests/properties/hard_cases/hard_case.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+constexpr uint32_t kSide = 72; // pixels
+
+class TemporalTest : public FrameTest
+{
+protected:
+    void SetUp() override
+    {
+        const std::vector<vec3> probes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f}, {-0.75f, 1.0f, -0.8f}};
+        auto baked = bakeField(scene, probes);
+        ASSERT_TRUE(baked) << baked.error().message;
+        device.emplace(std::move(*DeviceScene::create(gpu(), scene, baked->info)));
+        field.emplace(std::move(*LightField::create(gpu(), *baked)));
+    }
+    void TearDown() override
+    {
+        field.reset();
+        device.reset();
+    }
+    std::unique_ptr<SceneRenderer> renderer(bool temporal, uint32_t rays = 1)
+    {
+        RenderSettings settings = settingsOf(kSide);
+        settings.effects.temporal = temporal;
+        settings.glossyRays = rays;
+        settings.areaSamples = 8 * rays;
+        auto made = SceneRenderer::create(gpu(), *device, *field, settings);
+        EXPECT_TRUE(made);
+        return std::move(*made);
+    }
+    /// The camera after a number of steps of a tenth of a pixel to the side, by turning.
+    Camera turned(float steps) const
+    {
+        Camera camera = scene.cameras.front();
+        const vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
+        const float pixel = 2.0f * std::tan(0.5f * camera.verticalFov) / float(kSide);
+        camera.forward = glm::normalize(camera.forward + 0.1f * pixel * steps * right);
+        return camera;
+    }
+    static double difference(const RenderedFrame& a, const RenderedFrame& b)
+    {
+        double sum = 0.0;
+        for (size_t i = 0; i < a.beauty.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                sum += std::abs(std::min(a.beauty[i][c], 2.0f) - std::min(b.beauty[i][c], 2.0f)); // the lamp's edge moves in both alike
+        return sum / double(3 * a.beauty.size());
+    }
+
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    std::optional<DeviceScene> device;
+    std::optional<LightField> field;
+};
+
+TEST_F(TemporalTest, AStillPictureConverges)
+{
+    const auto truth = renderer(false, 64)->render(scene.cameras.front());
+    const auto many = renderer(true);
+    Result<RenderedFrame> frame = many->render(scene.cameras.front(), 0);
+    const double first = difference(*frame, *truth);
+    for (uint32_t i = 1; i < 24; ++i) frame = many->render(scene.cameras.front(), i);
+    ASSERT_TRUE(frame && truth);
+    EXPECT_LT(difference(*frame, *truth), 0.6 * first);
+}
+
+TEST_F(TemporalTest, AMovingPictureFlickersAtMostHalfMoreThanTheScene)
+{
+    const auto blended = renderer(true), alone = renderer(false), many = renderer(false, 64);
+    double flicker = 0.0, without = 0.0, own = 0.0;
+    std::optional<RenderedFrame> before, beforeAlone, beforeMany;
+    constexpr uint32_t kFrames = 64, kCounted = 16; // history has settled when counting starts
+    for (uint32_t i = 0; i < kFrames; ++i)
+    {
+        auto now = blended->render(turned(float(i)), i);
+        ASSERT_TRUE(now);
+        if (i + kCounted >= kFrames)
+        {
+            auto nowAlone = alone->render(turned(float(i)), i), nowMany = many->render(turned(float(i)));
+            if (beforeMany)
+            {
+                flicker += difference(*now, *before);
+                without += difference(*nowAlone, *beforeAlone);
+                own += difference(*nowMany, *beforeMany);
+            }
+            beforeAlone = std::move(*nowAlone);
+            beforeMany = std::move(*nowMany);
+        }
+        before = std::move(*now);
+    }
+    RecordProperty("without", std::to_string(without / own));
+    expectAtMost("camera turning by a tenth of a pixel a frame: change from frame to frame, times the noiseless picture's",
+                 size_t(kCounted - 1) * kSide * kSide, flicker / own, 1.5);
+}
+
+TEST_F(TemporalTest, WhatWasHiddenIsNotBlendedWithWhatHidIt)
+{
+    const auto blended = renderer(true), alone = renderer(false), many = renderer(false, 64);
+    for (uint32_t i = 0; i < 12; ++i) ASSERT_TRUE(blended->render(scene.cameras.front(), i));
+    Camera aside = scene.cameras.front();
+    aside.eye.x += 0.4f; // the boxes move before the walls by many pixels
+    const auto after = blended->render(aside, 12), fresh = alone->render(aside, 12), truth = many->render(aside);
+    ASSERT_TRUE(after && fresh && truth);
+    EXPECT_LT(difference(*after, *truth), 1.1 * difference(*fresh, *truth));
+}
+
+TEST_F(TemporalTest, AfterACutNothingIsLeftOfTheFramesBefore)
+{
+    const auto cut = renderer(true), fresh = renderer(true);
+    for (uint32_t i = 0; i < 3; ++i) ASSERT_TRUE(cut->render(turned(200.0f), i));
+    cut->cut();
+    const auto a = cut->render(scene.cameras.front(), 7), b = fresh->render(scene.cameras.front(), 7);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->beauty, b->beauty);
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,125 @@
+// A host's G-buffer with numbers that are none, in some pixels of each image: they stay where they are.
+#include <cstdlib>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "runtime/frame/indirect_light.h"
+#include "runtime/vulkan/nan_scan.h"
+#include "scene/builtin_scenes.h"
+#include "tests/properties/frames/frame_test.h"
+#include "tests/properties/hard_cases/hard_case.h"
+#include "tests/properties/hard_cases/hard_frames.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+constexpr uint32_t kSide = 48;    // pixels
+constexpr float kNear = 1.0f;     // metres, of the depth
+constexpr float kDistance = 1.9f; // metres to the wall that every pixel shows
+
+class HostInputs : public FrameTest
+{
+protected:
+    void SetUp() override
+    {
+        const char* was = std::getenv("SCONCE_NAN_SCAN");
+        before = was ? was : "";
+        setenv("SCONCE_NAN_SCAN", "1", 1); // a submit fails with the first bad number that a pass writes
+    }
+    void TearDown() override { setenv("SCONCE_NAN_SCAN", before.c_str(), 1); }
+
+    GpuImage picture(const std::vector<glm::vec4>& values, const char* what)
+    {
+        ImageDesc desc;
+        desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+        desc.width = desc.height = kSide;
+        desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        auto image = gpu().makeImage(desc, what);
+        auto buffer = gpu().makeBufferWith<glm::vec4>(values, 0, what);
+        EXPECT_TRUE(image && buffer);
+        const auto status = gpu().submit(
+            [&](VkCommandBuffer cmd)
+            {
+                constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+                constexpr VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+                constexpr VkImageLayout target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+                transition(gpu(), cmd, *image, {VK_IMAGE_LAYOUT_UNDEFINED, target, all, all, any, any});
+                VkBufferImageCopy copy{};
+                copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                copy.imageExtent = {kSide, kSide, 1};
+                gpu().vk.CmdCopyBufferToImage(cmd, buffer->handle(), image->handle(), target, 1, &copy);
+                transition(gpu(), cmd, *image, {target, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, all, all, any, any});
+            });
+        EXPECT_TRUE(status);
+        return std::move(*image);
+    }
+
+    std::string before;
+};
+
+TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    BakeSettings bake;
+    bake.resolution = 64;
+    bake.bounces = 1;
+    bake.scene = fewSamples();
+    BakeReport report;
+    const auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
+    ASSERT_TRUE(field) << field.error().message;
+    const auto light = LightField::create(gpu(), *field);
+    ASSERT_TRUE(light) << light.error().message;
+
+    // The back wall, seen from the middle of the open side; roughness from mirror to rough along x.
+    std::vector<glm::vec4> depth(size_t(kSide) * kSide, glm::vec4(kNear / kDistance)), normal(depth.size(), glm::vec4(0, 0, 1, 0)),
+        base(depth.size(), glm::vec4(0.7f, 0.7f, 0.7f, 0.0f));
+    for (size_t i = 0; i < normal.size(); ++i) normal[i].w = float(i % kSide) / float(kSide - 1);
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const float odd[] = {NAN, inf, -inf, 3e38f, -3e38f};
+    size_t planted = 0;
+    for (uint32_t y = 3; y < kSide; y += 7)
+        for (uint32_t x = 1; x < kSide; x += 5, ++planted)
+        {
+            std::vector<glm::vec4>* images[] = {&normal, &normal, &base, &depth};
+            glm::vec4& pixel = (*images[planted % 4])[size_t(y) * kSide + x];
+            pixel[int(planted / 4 % (planted % 4 == 3 ? 1 : 4))] = odd[planted % 5];
+        }
+    normal[0] = glm::vec4(0, 0, 0, 0.3f); // of no length
+    const GpuImage depthImage = picture(depth, "host's depth"), normalImage = picture(normal, "host's normals"),
+                   baseImage = picture(base, "host's base colour");
+
+    IndirectLight::Desc desc;
+    desc.width = desc.height = kSide;
+    desc.effects.temporal = true;
+    auto indirect = IndirectLight::create(gpu(), *light, desc);
+    ASSERT_TRUE(indirect) << indirect.error().message;
+    indirect->setInputs({depthImage.view(), normalImage.view(), baseImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    gpu::FrameView view{};
+    const vec3 eye(0.0f, 1.0f, 0.9f);
+    view.worldFromClip = mat4(vec4(0.5f * kNear, 0, 0, 0), vec4(0, -0.5f * kNear, 0, 0), vec4(eye, 1), vec4(0, 0, -kNear, 0));
+    view.clipFromWorldBefore = mat4(vec4(2, 0, 0, 0), vec4(0, -2, 0, 0), vec4(0, 0, 0, -1), vec4(0, 2, 0, 0.9f));
+    view.eye = view.eyeBefore = eye;
+    view.size = {kSide, kSide};
+    view.glossyRays = 1;
+    view.normalOffset = 1e-4f;
+    view.raysBelow = gpu::kRaysBelow;
+    std::string finding;
+    for (uint32_t i = 0; i < 4; ++i)
+    {
+        view.seed = i;
+        view.follows = i > 0;
+        const auto status = gpu().submit([&](VkCommandBuffer cmd) { indirect->record(cmd, view); });
+        if (!status && finding.empty()) finding = status.error().message;
+    }
+    EXPECT_EQ(finding, "");
+    expectAtMost("NaN, infinite and huge numbers in a host's G-buffer: frames in which a pass writes one that is not finite", planted,
+                 finding.empty() ? 0.0 : 1.0, 0.0);
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,374 @@
+// The .sconce file: what comes back is what was written, and no damage passes unnoticed.
+#include "runtime/field/light_field_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+using namespace sconce;
+namespace fs = std::filesystem;
+
+namespace
+{
+
+class LightFieldFile : public testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        folder = fs::temp_directory_path() /
+                 ("sconce_file_" + std::to_string(getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(folder);
+        file = folder / "field.sconce";
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    size_t filesInFolder() const { return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+
+    fs::path folder, file;
+};
+
+std::string readBytes(const fs::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void writeBytes(const fs::path& file, const std::string& bytes)
+{
+    std::ofstream(file, std::ios::binary | std::ios::trunc).write(bytes.data(), std::streamsize(bytes.size()));
+}
+
+FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32_t probes = 3)
+{
+    FieldData field;
+    std::mt19937 random(7);
+    field.info.scale = 4.0f;
+    field.info.boundsHigh = {1.0f, 2.0f, 3.0f};
+    field.info.probeCount = probes;
+    field.info.chart = chart;
+    field.info.faceSize = size;
+    field.info.topLevel = chart == gpu::kChartCube ? coarsestLevel(size) : 0;
+    field.info.wordsPerProbe = distanceWordsPerProbe(chart, size);
+    field.info.marker = 255;
+    field.probes.resize(probes);
+    for (gpu::ProbeHeader& probe : field.probes) probe.centre = {float(random() % 100), 0.5f, -1.0f};
+    field.distance.resize(size_t(probes) * field.info.wordsPerProbe);
+    field.radiance.resize(size_t(probes) * radianceWordsPerProbe(chart, size));
+    field.irradiance.resize(size_t(probes) * gpu::kIrradianceSize * gpu::kIrradianceSize * 2);
+    field.prefiltered.resize(size_t(probes) * gpu::kPrefilteredWords);
+    field.patches.resize(size_t(probes) * 2 * gpu::kPatches);
+    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches})
+        for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
+    field.octree.boundsHigh = {1.0f, 2.0f, 3.0f};
+    field.info.voxel = field.octree.voxel = 0.125f;
+    field.info.topCells = field.octree.topCells = {2, 2, 2};
+    field.info.topShift = field.octree.topShift = 3;
+    field.info.bricks = field.octree.bricks = {2, 1, 1};
+    field.octree.leaves = 15;
+    field.octree.nodes = 1;
+    field.octree.texels.assign(2 * 8 * 4, uint16_t(probes - 1));
+    field.octree.texels[0] = 1, field.octree.texels[1] = 0, field.octree.texels[2] = 0, field.octree.texels[3] = 255;
+    field.resolution = 2 * size;
+    field.bounces = 2;
+    field.sceneName = "ca\"fé";
+    field.effects = {"sun", "glossy"};
+    return field;
+}
+
+void expectSame(const FieldData& a, const FieldData& b)
+{
+    EXPECT_EQ(std::memcmp(&a.info, &b.info, sizeof(a.info)), 0);
+    ASSERT_EQ(a.probes.size(), b.probes.size());
+    EXPECT_TRUE(a.probes.empty() || std::memcmp(a.probes.data(), b.probes.data(), a.probes.size() * sizeof(gpu::ProbeHeader)) == 0);
+    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.radiance, b.radiance);
+    EXPECT_EQ(a.irradiance, b.irradiance);
+    EXPECT_EQ(a.prefiltered, b.prefiltered);
+    EXPECT_EQ(a.patches, b.patches);
+    EXPECT_EQ(a.octree.texels, b.octree.texels);
+    EXPECT_EQ(a.octree.boundsHigh, b.octree.boundsHigh);
+    EXPECT_EQ(a.octree.voxel, b.octree.voxel);
+    EXPECT_EQ(a.octree.topCells, b.octree.topCells);
+    EXPECT_EQ(a.octree.topShift, b.octree.topShift);
+    EXPECT_EQ(a.octree.bricks, b.octree.bricks);
+    EXPECT_EQ(a.octree.marker, b.octree.marker);
+    EXPECT_EQ(a.octree.leaves, b.octree.leaves);
+    EXPECT_EQ(a.octree.nodes, b.octree.nodes);
+    EXPECT_EQ(a.resolution, b.resolution);
+    EXPECT_EQ(a.bounces, b.bounces);
+    EXPECT_EQ(a.sceneName, b.sceneName);
+    EXPECT_EQ(a.effects, b.effects);
+}
+
+} // namespace
+
+// The sums of squares written out by hand.
+TEST(FieldData, WordsPerProbeFollowTheLevelsOfTheChain)
+{
+    EXPECT_EQ(coarsestLevel(256), 6u);
+    EXPECT_EQ(coarsestLevel(96), 6u); // 6 cells at level 4, two that reach over the border at level 6
+    EXPECT_EQ(coarsestLevel(8), 4u);
+    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartCube, 256), 6u * (256 * 256 + 64 * 64 + 16 * 16 + 4 * 4 + (64 * 64 + 16 * 16 + 4 * 4) / 2));
+    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartCube, 8), 6u * (64 + 4 + 1 + 3)); // five cells' far bounds take three words
+    EXPECT_EQ(distanceWordsPerProbe(gpu::kChartOctahedral, 512), 512u * 512 + 32 * 32);
+    EXPECT_EQ(radianceWordsPerProbe(gpu::kChartCube, 16), 6u * 256);
+    EXPECT_EQ(radianceWordsPerProbe(gpu::kChartOctahedral, 16), 256u);
+}
+
+TEST(FieldData, BytesByPartAddUpToWhatIsStored)
+{
+    for (const uint32_t chart : {gpu::kChartCube, gpu::kChartOctahedral})
+    {
+        const FieldData field = smallField(chart, 16);
+        const FieldBytes bytes = bytesByPart(field);
+        EXPECT_EQ(bytes.distance + bytes.normals, field.distance.size() * 4);
+        EXPECT_EQ(bytes.normals, chart == gpu::kChartOctahedral ? 3u * 16 * 16 * 2 : 0u);
+        EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size() + field.prefiltered.size() +
+                                      field.patches.size()) +
+                                     16 * 4 + 3 * 48);
+    }
+}
+
+TEST_F(LightFieldFile, RoundTripGivesBackEveryField)
+{
+    for (const uint32_t chart : {gpu::kChartCube, gpu::kChartOctahedral})
+        for (const uint32_t probes : {1u, 3u, 100u})
+        {
+            const FieldData field = smallField(chart, 16, probes);
+            ASSERT_TRUE(saveField(field, file));
+            const Result<FieldData> back = loadField(file);
+            ASSERT_TRUE(back) << back.error().message;
+            expectSame(field, *back);
+            EXPECT_EQ(filesInFolder(), 1u);
+        }
+}
+
+TEST_F(LightFieldFile, WhatNoSurfaceCallsForMayBeLeftOut)
+{
+    for (const bool radiance : {false, true})
+    {
+        FieldData field = smallField(gpu::kChartCube, 16);
+        (radiance ? field.radiance : field.prefiltered).clear();
+        ASSERT_TRUE(saveField(field, file));
+        const Result<FieldData> back = loadField(file);
+        ASSERT_TRUE(back) << back.error().message;
+        expectSame(field, *back);
+    }
+}
+
+TEST_F(LightFieldFile, RoundTripOfAnEmptyField)
+{
+    FieldData field = smallField(gpu::kChartCube, 8, 1);
+    field.info.probeCount = 0;
+    field.probes.clear(), field.distance.clear(), field.radiance.clear(), field.irradiance.clear(), field.prefiltered.clear(),
+        field.patches.clear(), field.octree.texels.clear();
+    field.octree.bricks = {0, 0, 0};
+    field.effects.clear();
+    ASSERT_TRUE(saveField(field, file));
+    const Result<FieldData> back = loadField(file);
+    ASSERT_TRUE(back) << back.error().message;
+    expectSame(field, *back);
+}
+
+// 3 probes of 6 * (512^2 + 128^2 + 32^2 + 8^2) words are 20 MB of noise: more than one block, and none that zstd can shrink.
+TEST_F(LightFieldFile, RoundTripOfSectionsInSeveralBlocks)
+{
+    FieldData field = smallField(gpu::kChartCube, 512, 3);
+    std::mt19937 random(3);
+    for (uint32_t& word : field.distance) word = uint32_t(random());
+    ASSERT_TRUE(saveField(field, file));
+    const Result<FieldData> back = loadField(file);
+    ASSERT_TRUE(back) << back.error().message;
+    expectSame(field, *back);
+    const Result<VerifyReport> report = verifyField(file);
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report->ok());
+    EXPECT_TRUE(std::ranges::any_of(report->blocks, [](const BlockReport& b) { return b.name == "distance 1"; }));
+}
+
+TEST_F(LightFieldFile, SameFieldGivesSameBytes)
+{
+    ASSERT_TRUE(saveField(smallField(), file));
+    const std::string first = readBytes(file);
+    ASSERT_TRUE(saveField(smallField(), folder / "again.sconce"));
+    EXPECT_EQ(first, readBytes(folder / "again.sconce"));
+}
+
+TEST_F(LightFieldFile, EveryFlippedByteIsNoticed)
+{
+    ASSERT_TRUE(saveField(smallField(gpu::kChartCube, 8, 1), file));
+    const std::string good = readBytes(file);
+    ASSERT_LT(good.size(), 8000u);
+    for (size_t at = 0; at < good.size(); ++at)
+    {
+        std::string bad = good;
+        bad[at] = char(bad[at] ^ (1 << (at % 8)));
+        writeBytes(file, bad);
+        const Result<FieldData> field = loadField(file);
+        ASSERT_FALSE(field) << "byte " << at;
+        EXPECT_EQ(field.error().code, ErrorCode::badInput);
+        EXPECT_NE(field.error().message.find("field.sconce"), std::string::npos) << field.error().message;
+        const Result<VerifyReport> report = verifyField(file);
+        ASSERT_TRUE(report);
+        EXPECT_FALSE(report->ok()) << "byte " << at;
+    }
+}
+
+TEST_F(LightFieldFile, DamageNamesTheBlock)
+{
+    ASSERT_TRUE(saveField(smallField(), file));
+    const Result<VerifyReport> sound = verifyField(file);
+    ASSERT_TRUE(sound && sound->ok());
+    const std::string good = readBytes(file);
+    for (const BlockReport& block : sound->blocks)
+    {
+        std::string bad = good;
+        bad[block.offset + block.storedBytes / 2] ^= 0x10;
+        writeBytes(file, bad);
+        const Result<VerifyReport> report = verifyField(file);
+        ASSERT_TRUE(report);
+        for (const BlockReport& row : report->blocks)
+        {
+            EXPECT_EQ(row.problem.empty(), row.name != block.name) << row.name;
+        }
+        const Result<FieldData> field = loadField(file);
+        ASSERT_FALSE(field);
+        EXPECT_NE(field.error().message.find(block.name), std::string::npos) << block.name << ": " << field.error().message;
+    }
+}
+
+TEST_F(LightFieldFile, EveryTruncationIsRefusedWithASentence)
+{
+    ASSERT_TRUE(saveField(smallField(gpu::kChartCube, 8, 1), file));
+    const std::string good = readBytes(file);
+    for (size_t size = 0; size < good.size(); ++size)
+    {
+        writeBytes(file, good.substr(0, size));
+        const Result<FieldData> field = loadField(file);
+        ASSERT_FALSE(field) << size;
+        EXPECT_EQ(field.error().message.back(), '.');
+    }
+    writeBytes(file, good + "x");
+    EXPECT_FALSE(loadField(file));
+}
+
+TEST_F(LightFieldFile, OtherVersionsAreRefusedByName)
+{
+    for (const uint32_t version : {kOldestFieldFileVersion - 1, kFieldFileVersion + 1})
+    {
+        ASSERT_TRUE(saveField(smallField(), file));
+        std::string bytes = readBytes(file);
+        bytes[8] = char(version); // another writer's header, its own checksum right
+        const uint64_t sum = XXH3_64bits(bytes.data(), 32);
+        std::memcpy(bytes.data() + 32, &sum, 8);
+        writeBytes(file, bytes);
+        const Result<FieldData> field = loadField(file);
+        ASSERT_FALSE(field);
+        EXPECT_NE(field.error().message.find("version " + std::to_string(version)), std::string::npos) << field.error().message;
+        EXPECT_NE(field.error().message.find(version > kFieldFileVersion ? "newer" : "again"), std::string::npos);
+    }
+}
+
+// A file of version 2 is one of today's without prefiltered radiance and patches, but for its header's number.
+TEST_F(LightFieldFile, AnOlderFileSaysItsOwnVersion)
+{
+    FieldData field = smallField();
+    field.prefiltered.clear();
+    field.patches.clear();
+    ASSERT_TRUE(saveField(field, file));
+    EXPECT_EQ(loadField(file)->fileVersion, kFieldFileVersion);
+    std::string bytes = readBytes(file);
+    bytes[8] = char(kOldestFieldFileVersion);
+    const uint64_t sum = XXH3_64bits(bytes.data(), 32);
+    std::memcpy(bytes.data() + 32, &sum, 8);
+    std::memcpy(bytes.data() + bytes.size() - 16, &sum, 8); // the footer has it again
+    writeBytes(file, bytes);
+    const Result<FieldData> older = loadField(file);
+    ASSERT_TRUE(older) << older.error().message;
+    EXPECT_EQ(older->fileVersion, kOldestFieldFileVersion);
+}
+
+TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
+{
+    FieldData field = smallField();
+    field.radiance.pop_back();
+    EXPECT_EQ(saveField(field, file).error().code, ErrorCode::badArgument);
+    field = smallField();
+    field.octree.texels[4] = 3; // probes 0..2
+    EXPECT_NE(saveField(field, file).error().message.find("names a probe"), std::string::npos);
+    field = smallField();
+    field.octree.texels[0] = 2; // bricks 0..1
+    EXPECT_NE(saveField(field, file).error().message.find("outside"), std::string::npos);
+    field = smallField();
+    field.octree.texels[4 * 2] = 1, field.octree.texels[4 * 2 + 1] = 0, field.octree.texels[4 * 2 + 2] = 0; // brick 1 points to itself
+    field.octree.texels[4 * 2 + 3] = 255;
+    EXPECT_NE(saveField(field, file).error().message.find("below the finest"), std::string::npos);
+    field = smallField();
+    field.info.topShift = 2;
+    EXPECT_NE(saveField(field, file).error().message.find("disagrees"), std::string::npos);
+    field = smallField();
+    field.probes[1].centre.y = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_NE(saveField(field, file).error().message.find("probe 1"), std::string::npos);
+    EXPECT_EQ(filesInFolder(), 0u);
+}
+
+TEST_F(LightFieldFile, MissingAndMisusedPathsGiveSentences)
+{
+    EXPECT_EQ(loadField(folder / "none.sconce").error().code, ErrorCode::fileError);
+    EXPECT_EQ(loadField(folder).error().code, ErrorCode::fileError);
+    EXPECT_EQ(verifyField(folder / "none.sconce").error().code, ErrorCode::fileError);
+    EXPECT_EQ(saveField(smallField(), folder / "no_such_folder" / "a.sconce").error().code, ErrorCode::fileError);
+    EXPECT_EQ(saveField(smallField(), folder).error().code, ErrorCode::fileError);
+}
+
+// A full disk, as a file size limit: the write fails half-way.
+TEST_F(LightFieldFile, FailedWriteLeavesTheOldFileAndNoRubbish)
+{
+    ASSERT_TRUE(saveField(smallField(), file));
+    const std::string old = readBytes(file);
+    EXPECT_EXIT(
+        {
+            signal(SIGXFSZ, SIG_IGN);
+            rlimit limit;
+            limit.rlim_cur = limit.rlim_max = 4096;
+            setrlimit(RLIMIT_FSIZE, &limit);
+            FieldData big = smallField(gpu::kChartCube, 64, 3);
+            std::mt19937 random(1);
+            for (uint32_t& word : big.distance) word = uint32_t(random());
+            const Status status = saveField(big, file);
+            _exit(!status && status.error().code == ErrorCode::fileError ? 7 : 1);
+        },
+        testing::ExitedWithCode(7), "");
+    EXPECT_EQ(readBytes(file), old);
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(LightFieldFile, UnwritableFolderLeavesTheOldFile)
+{
+    ASSERT_TRUE(saveField(smallField(), file));
+    const std::string old = readBytes(file);
+    ASSERT_EQ(chmod(folder.c_str(), 0555), 0);
+    EXPECT_EXIT(
+        {
+            if (geteuid() == 0 && seteuid(65534) != 0) _exit(3); // root ignores the mode
+            const Status status = saveField(smallField(gpu::kChartCube, 16), file);
+            _exit(!status && status.error().code == ErrorCode::fileError ? 7 : 1);
+        },
+        testing::ExitedWithCode(7), "");
+    ASSERT_EQ(chmod(folder.c_str(), 0755), 0);
+    EXPECT_EQ(readBytes(file), old);
+    EXPECT_EQ(filesInFolder(), 1u);
+}

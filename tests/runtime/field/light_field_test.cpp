@@ -1,0 +1,96 @@
+// The GPU runs the same text as the CPU: the answers must agree ray by ray.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "runtime/field/light_field.h"
+#include "runtime/field/tracer_cpu.h"
+#include "tests/support/cornell_field.h"
+#include "tests/support/device.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+class GpuTrace : public DeviceTest
+{
+};
+
+/// Seven probes with a radiance that differs from texel to texel.
+FieldData litCornell()
+{
+    FieldData field = cornell().field;
+    twin::LightFieldTwin<float> text(field, {});
+    for (size_t i = 0; i < field.radiance.size(); ++i)
+        field.radiance[i] = text.packRadiance(vec3(float(i % 7), float(i % 11), float(i % 5)) * 0.25f);
+    return field;
+}
+
+TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
+{
+    const FieldData field = litCornell();
+    const RaySet set = cornellRays(20000);
+    auto device = LightField::create(gpu(), field);
+    ASSERT_TRUE(device) << device.error().message;
+    auto tracer = RayTracer::create(gpu(), *device);
+    ASSERT_TRUE(tracer) << tracer.error().message;
+    std::vector<gpu::Ray> rays(set.size());
+    for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i], i % 2 == 0 ? set.normals[i] : glm::vec3(0.0f)};
+    std::vector<gpu::RayHit> hits(rays.size());
+    ASSERT_TRUE(tracer->trace(rays, hits));
+
+    twin::LightFieldTwin<float> text(field, defaultQuality());
+    size_t different = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+    {
+        const gpu::RayHit cpu = text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
+        const gpu::RayHit& got = hits[i];
+        if (cpu.status != got.status || cpu.probe != got.probe || cpu.handoffs != got.handoffs || cpu.distanceReads != got.distanceReads ||
+            cpu.indexReads != got.indexReads || std::abs(cpu.t - got.t) > 2e-5f * cpu.t)
+        {
+            ++different;
+            continue;
+        }
+        EXPECT_NEAR(glm::distance(vec3(cpu.radiance), vec3(got.radiance)), 0.0f, 1e-3f);
+        EXPECT_NEAR(glm::distance(vec3(cpu.normal), vec3(got.normal)), 0.0f, 1e-4f);
+    }
+    EXPECT_LE(different, rays.size() / 2000) << "0.05 %: rays that graze a texel's corner may round to its other side";
+}
+
+TEST_F(GpuTrace, OddRaysEndFinite)
+{
+    const FieldData field = litCornell();
+    auto device = LightField::create(gpu(), field);
+    auto tracer = RayTracer::create(gpu(), *device);
+    const float nan = std::nanf(""), inf = INFINITY;
+    std::vector<gpu::Ray> rays;
+    for (float a : {0.0f, -0.0f, 1.0f, nan, inf, -inf, 1e-40f, 1e30f})
+        for (float b : {0.0f, 1.0f, nan, inf}) rays.push_back({vec3(a, b, 0.5f), vec3(b, a, 0.0f), vec3(0.0f)});
+    std::vector<gpu::RayHit> hits(rays.size());
+    ASSERT_TRUE(tracer->trace(rays, hits));
+    for (const gpu::RayHit& hit : hits)
+        EXPECT_TRUE(std::isfinite(hit.t + hit.position.x + hit.position.y + hit.position.z + hit.normal.x + hit.radiance.x));
+}
+
+TEST_F(GpuTrace, RefusesKnobsOutOfRangeByName)
+{
+    Quality quality;
+    quality.trace.ranked = 9;
+    const auto field = LightField::create(gpu(), cornell().field, quality);
+    ASSERT_FALSE(field);
+    EXPECT_NE(field.error().message.find("ranked 9"), std::string::npos);
+}
+
+TEST_F(GpuTrace, NoRaysIsNoWork)
+{
+    const FieldData field = litCornell();
+    auto device = LightField::create(gpu(), field);
+    auto tracer = RayTracer::create(gpu(), *device);
+    EXPECT_TRUE(tracer->trace({}, {}));
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,158 @@
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/numbers.h"
+#include "runtime/field/field_space.h"
+#include "runtime/scene/lights.h"
+#include "scene/builtin_scenes.h"
+#include "scene/mesh_builder.h"
+
+namespace sconce
+{
+namespace
+{
+
+Scene cornell()
+{
+    auto scene = makeBuiltinScene("cornell");
+    if (!scene) throw std::runtime_error(scene.error().message);
+    return std::move(*scene);
+}
+
+TEST(LightList, EmitterPatchesCarryTheScenesWholePower)
+{
+    const Scene scene = cornell();
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    double power = 0.0; // area times luminance, field units
+    for (size_t t = 0; t < scene.triangles.size(); ++t)
+    {
+        const uvec3 c = scene.triangles[t];
+        const vec3 cross = glm::cross(scene.positions[c.y] - scene.positions[c.x], scene.positions[c.z] - scene.positions[c.x]);
+        power += 0.5 * glm::length(cross) / (space.scale * space.scale) * luminance(scene.materials[scene.triangleMaterial[t]].emission);
+    }
+    const LightList list = buildLightList(scene, space, {});
+    ASSERT_EQ(list.header.emitterCount, 64u);
+    double carried = 0.0;
+    for (const gpu::GpuLight& light : list.lights) carried += double(light.area) * luminance(light.intensity);
+    EXPECT_NEAR(carried, power, 1e-4 * power);
+}
+
+// Patches of equal power once left a lamp of less than a 64th of the scene's power without any: the room that it lights was black.
+TEST(LightList, ADimLampInTheNextRoomHasPatchesThatCarryItsPower)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.quad({0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, mesh.emitter("bright", vec3(30.0f)));
+    mesh.quad({5, 0, 0}, {6, 0, 0}, {6, 0, 1}, {5, 0, 1}, mesh.emitter("dim", vec3(0.1f)));
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    double bright = 0.0, dim = 0.0; // area times radiance, m^2
+    for (const gpu::GpuLight& light : buildLightList(scene, space, {}).lights)
+        (light.intensity.g > 1.0f ? bright : dim) += double(light.area) * space.scale * space.scale * light.intensity.g;
+    EXPECT_NEAR(bright, 30.0, 0.03 * 30.0);
+    EXPECT_NEAR(dim, 0.1, 0.05 * 0.1);
+}
+
+TEST(LightList, EmitterPatchesLieInsideTheLampAndAverageToItsCentre)
+{
+    const Scene scene = cornell();
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    Bounds lamp;
+    for (size_t t = 0; t < scene.triangles.size(); ++t)
+        if (scene.materials[scene.triangleMaterial[t]].emission != vec3(0.0f))
+            for (int k = 0; k < 3; ++k) lamp.add(scene.positions[scene.triangles[t][k]]);
+    vec3 mean(0.0f);
+    const LightList list = buildLightList(scene, space, {});
+    for (const gpu::GpuLight& light : list.lights)
+    {
+        const vec3 p = space.origin + space.scale * light.position;
+        EXPECT_TRUE(glm::all(glm::greaterThanEqual(p, lamp.low - 1e-4f)) && glm::all(glm::lessThanEqual(p, lamp.high + 1e-4f)));
+        mean += p / float(list.lights.size());
+    }
+    EXPECT_LT(glm::length(mean - lamp.centre()), 0.03f * lamp.diagonal());
+}
+
+// Over the sphere a constant radiance L sums to 4 pi L, and its cosine over any hemisphere to pi L.
+TEST(LightList, SkyDirectionsIntegrateConstantsAndCosines)
+{
+    Scene scene = cornell();
+    scene.sky = {1.0f, 2.0f, 0.5f};
+    const LightList list = buildLightList(scene, fieldSpace(scene.bounds()), {.emitterSamples = 0});
+    ASSERT_EQ(list.header.skyCount, 48u);
+    const vec3 normals[] = {{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {0.6f, 0.8f, 0}, {-0.48f, 0.6f, 0.64f}};
+    vec3 total(0.0f);
+    for (const gpu::GpuLight& light : list.lights) total += light.intensity;
+    EXPECT_NEAR(total.g, 8.0f * std::numbers::pi_v<float>, 1e-3f);
+    for (const vec3 n : normals)
+    {
+        float irradiance = 0.0f;
+        for (const gpu::GpuLight& light : list.lights) irradiance += std::max(glm::dot(n, -light.direction), 0.0f) * light.intensity.r;
+        EXPECT_NEAR(irradiance, std::numbers::pi_v<float>, 0.03f * std::numbers::pi_v<float>) << n.x << " " << n.y << " " << n.z;
+    }
+}
+
+TEST(LightList, DeltaLightsComeFirstInFieldUnits)
+{
+    Scene scene = cornell();
+    Light point;
+    point.type = LightType::point;
+    point.position = {0.1f, 0.2f, 0.3f};
+    point.intensity = vec3(8.0f);
+    point.range = 4.0f;
+    scene.lights = {point, Light{}};
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    const LightList list = buildLightList(scene, space, {});
+    ASSERT_EQ(list.header.deltaCount, 2u);
+    // Irradiance intensity / distance^2 must not depend on the unit of length.
+    EXPECT_FLOAT_EQ(list.lights[0].intensity.r * space.scale * space.scale, 8.0f);
+    EXPECT_FLOAT_EQ(list.lights[0].range * space.scale, 4.0f);
+    EXPECT_EQ(list.lights[1].type, gpu::kLightDirectional);
+    EXPECT_EQ(list.lights[2].type, gpu::kLightEmitter);
+    EXPECT_EQ(list.pointLayers, 6u);
+    EXPECT_EQ(list.sunLayers, 1u);
+}
+
+TEST(LightList, SceneWithoutLightHasNoEntries)
+{
+    Scene scene = cornell();
+    for (Material& material : scene.materials) material.emission = vec3(0.0f);
+    const LightList list = buildLightList(scene, fieldSpace(scene.bounds()), {});
+    EXPECT_TRUE(list.lights.empty());
+}
+
+TEST(LightList, ManyShadowMapsShrinkUntilTheyFit)
+{
+    Scene scene = cornell();
+    Light lamp;
+    lamp.type = LightType::point;
+    lamp.intensity = vec3(1.0f);
+    scene.lights.assign(100, lamp);
+    const LightList list = buildLightList(scene, fieldSpace(scene.bounds()), {});
+    EXPECT_LT(list.settings.pointShadow, 512u);
+    EXPECT_LE(uint64_t(list.pointLayers) * list.settings.pointShadow * list.settings.pointShadow * 4, kShadowBytes);
+}
+
+// The map of a directional light covers the scene: every corner of its bounds has x, y and depth in [0,1].
+TEST(LightList, DirectionalMapsCoverTheScene)
+{
+    Scene scene = cornell();
+    scene.sky = vec3(1.0f);
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    for (const gpu::GpuLight& light : buildLightList(scene, space, {.emitterSamples = 0}).lights)
+        for (int corner = 0; corner < 8; ++corner)
+        {
+            const vec3 p(corner & 1 ? space.sceneLow.x : space.sceneHigh.x, corner & 2 ? space.sceneLow.y : space.sceneHigh.y,
+                         corner & 4 ? space.sceneLow.z : space.sceneHigh.z);
+            for (const vec4 row : {light.shadowX, light.shadowY, light.shadowDepth})
+            {
+                EXPECT_GE(glm::dot(row, vec4(p, 1.0f)), 0.0f);
+                EXPECT_LE(glm::dot(row, vec4(p, 1.0f)), 1.0f);
+            }
+            // Depth falls along the way the light travels.
+            EXPECT_LT(glm::dot(vec3(light.shadowDepth), light.direction), 0.0f);
+        }
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,303 @@
+// A whole frame, from triangles to a picture, against the path-traced truth.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/reference/reference.h"
+#include "scene/builtin_scenes.h"
+#include "scene/mesh_builder.h"
+#include "tests/properties/frames/frame_test.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+constexpr uint32_t kSide = 96; // pixels
+
+class SceneRendererTest : public FrameTest
+{
+protected:
+    struct Pictures
+    {
+        RenderedFrame frame;
+        ImageSet truth;
+    };
+
+    static RenderSettings settingsFor()
+    {
+        RenderSettings settings = settingsOf(kSide);
+        settings.glossyRays = 16;
+        settings.areaSamples = 64;
+        return settings;
+    }
+
+    Result<RenderedFrame> draw(const Scene& scene, std::span<const vec3> probes, const RenderSettings& settings, uint32_t resolution = 128)
+    {
+        const auto field = bakeField(scene, probes, resolution);
+        if (!field) return field.error();
+        return drawWith(*field, scene, settings);
+    }
+
+    static ImageSet truthOf(const Scene& scene, uint32_t samples)
+    {
+        ReferenceSettings settings;
+        settings.width = settings.height = kSide;
+        settings.samples = samples;
+        settings.pixelCentre = true;
+        settings.camera = scene.cameras.front();
+        return std::move(renderReference(scene, settings)->images);
+    }
+};
+
+const std::vector<vec3> kCornellProbes = {{0.0f, 1.5f, 0.5f},    {-0.8f, 0.5f, 0.6f},  {0.8f, 0.5f, -0.4f}, {0.6f, 1.2f, 0.2f},
+                                          {-0.75f, 1.0f, -0.8f}, {0.3f, 0.9f, -0.75f}, {0.0f, 0.3f, 0.85f}};
+
+/// Mean over all pixels and channels.
+double mean(std::span<const float> values)
+{
+    double sum = 0.0;
+    for (float v : values) sum += v;
+    return sum / double(values.size());
+}
+std::span<const float> floats(const std::vector<vec3>& pixels)
+{
+    return {&pixels[0].x, 3 * pixels.size()};
+}
+
+/// Mean of |a - b| over the mean of b: noise of the truth and of the frame are both in it.
+double relativeDifference(std::span<const float> a, std::span<const float> b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+    return sum / double(a.size()) / mean(b);
+}
+
+/// Means over squares of 8 x 8 pixels, in which the truth's own noise counts for little.
+std::vector<float> squares(std::span<const float> pixels)
+{
+    std::vector<float> means(pixels.size() / 64, 0.0f);
+    for (size_t i = 0; i < pixels.size(); ++i)
+    {
+        const size_t x = i / 3 % kSide / 8, y = i / 3 / kSide / 8;
+        means[3 * (y * (kSide / 8) + x) + i % 3] += pixels[i] / 64.0f;
+    }
+    return means;
+}
+
+TEST_F(SceneRendererTest, CornellMatchesThePathTracer)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    const auto frame = draw(scene, kCornellProbes, settingsFor(), 512);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const ImageSet truth = truthOf(scene, 512);
+    EXPECT_LT(relativeDifference(floats(frame->direct), truth.find("direct")->pixels), 0.01) << "the lamp itself";
+    EXPECT_NEAR(mean(floats(frame->diffuseIndirect)) / mean(truth.find("diffuse_indirect")->pixels), 1.0, 0.12)
+        << "what glossy surfaces throw on others is baked as if they were diffuse";
+    EXPECT_LT(relativeDifference(floats(frame->diffuseIndirect), truth.find("diffuse_indirect")->pixels), 0.3);
+    EXPECT_NEAR(mean(floats(frame->glossyIndirect)) / mean(truth.find("glossy_indirect")->pixels), 1.0, 0.15);
+    EXPECT_LT(relativeDifference(floats(frame->glossyIndirect), truth.find("glossy_indirect")->pixels), 0.4);
+    size_t unknown = 0;
+    for (const auto& count : frame->counts) unknown += count.w;
+    EXPECT_LT(double(unknown), 0.02 * 16 * kSide * kSide);
+}
+
+/// Diffuse light of the box against the path tracer, from irradiance and another way: squares' relative difference, and its mean, ours over
+/// the truth's.
+struct DiffuseErrors
+{
+    double irradiance = 0.0, other = 0.0, mean = 0.0;
+};
+
+DiffuseErrors diffuseErrors(const RenderedFrame& irradiance, const RenderedFrame& other, const ImageSet& truth)
+{
+    const std::vector<float> asked = squares(truth.find("diffuse_indirect")->pixels);
+    return {relativeDifference(squares(floats(irradiance.diffuseIndirect)), asked),
+            relativeDifference(squares(floats(other.diffuseIndirect)), asked), mean(floats(other.diffuseIndirect)) / mean(asked)};
+}
+
+TEST_F(SceneRendererTest, TracedDiffuseLightIsNearerToThePathTracer)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    const auto field = bakeField(scene, kCornellProbes, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    RenderSettings settings = settingsFor();
+    settings.glossyRays = 64;
+    const auto read = drawWith(*field, scene, settings);
+    settings.effects.tracedDiffuse = true;
+    const auto traced = drawWith(*field, scene, settings);
+    ASSERT_TRUE(read && traced);
+    const DiffuseErrors errors = diffuseErrors(*read, *traced, truthOf(scene, 256));
+    EXPECT_LT(errors.other, errors.irradiance);
+    EXPECT_LT(errors.other, 0.12) << "irradiance: " << errors.irradiance;
+    EXPECT_NEAR(errors.mean, 1.0, 0.03);
+}
+
+TEST_F(SceneRendererTest, DiffuseLightByPatchesIsNearerToThePathTracer)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    auto field = bakeField(scene, kCornellProbes, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    RenderSettings settings = settingsFor();
+    settings.areaSamples = 64;
+    const auto read = drawWith(*field, scene, settings);
+    settings.effects.patches = true;
+    const auto patches = drawWith(*field, scene, settings);
+    ASSERT_TRUE(read && patches);
+    const DiffuseErrors errors = diffuseErrors(*read, *patches, truthOf(scene, 256));
+    EXPECT_LT(errors.other, 0.9 * errors.irradiance);
+    EXPECT_NEAR(errors.mean, 1.0, 0.15);
+    field->patches.clear(); // as a file of version 3
+    const auto refused = drawWith(*field, scene, settings);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("holds no patches"), std::string::npos);
+}
+
+TEST_F(SceneRendererTest, GBufferIsWhatThePathTracerSees)
+{
+    const Scene scene = *makeBuiltinScene("temple");
+    RenderSettings settings = settingsFor();
+    settings.effects = {.diffuse = false, .rough = false, .glossy = false, .mirror = false, .denoise = false};
+    const auto frame = draw(scene, std::vector{scene.cameras.front().eye}, settings);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const ImageSet truth = truthOf(scene, 1);
+    size_t depth = 0, normal = 0, albedo = 0, direct = 0;
+    const size_t pixels = size_t(kSide) * kSide;
+    for (size_t i = 0; i < pixels; ++i)
+    {
+        depth += std::abs(frame->depth[i] - truth.find("depth")->pixels[i]) > 1e-3f * truth.find("depth")->pixels[i];
+        for (int c = 0; c < 3; ++c)
+        {
+            normal += std::abs(frame->normal[i][c] - truth.find("normal")->pixels[3 * i + c]) > 0.01f;
+            albedo += std::abs(frame->albedo[i][c] - truth.find("albedo")->pixels[3 * i + c]) > 0.01f;
+            direct += std::abs(frame->direct[i][c] - truth.find("direct")->pixels[3 * i + c]) >
+                      0.05f * (0.1f + truth.find("direct")->pixels[3 * i + c]);
+        }
+    }
+    EXPECT_LT(depth, pixels / 100) << "silhouettes may round to the other side";
+    EXPECT_LT(normal, 3 * pixels / 100);
+    EXPECT_LT(albedo, 3 * pixels / 100);
+    EXPECT_LT(direct, 3 * pixels / 25) << "the sun's shadow map is a texel wide of the truth along shadows' edges";
+}
+
+TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    RenderSettings settings = settingsFor();
+    settings.glossyRays = 1;
+    const auto all = draw(scene, kCornellProbes, settings);
+    settings.effects.glossy = settings.effects.rough = settings.effects.mirror = false;
+    const auto diffuseOnly = draw(scene, kCornellProbes, settings);
+    ASSERT_TRUE(all && diffuseOnly);
+    EXPECT_EQ(all->diffuseIndirect, diffuseOnly->diffuseIndirect) << "to the bit";
+    EXPECT_EQ(all->direct, diffuseOnly->direct);
+    for (const vec3& pixel : diffuseOnly->glossyIndirect) EXPECT_EQ(pixel, vec3(0.0f));
+    for (size_t i = 0; i < all->beauty.size(); ++i)
+        EXPECT_EQ(diffuseOnly->beauty[i], diffuseOnly->direct[i] + diffuseOnly->diffuseIndirect[i]);
+}
+
+// Objects that move are in the G-buffer and not in the light field: they are lit by it and reflect it.
+TEST_F(SceneRendererTest, ObjectThatTheLightFieldDoesNotKnowIsLitAndReflects)
+{
+    const Scene still = *makeBuiltinScene("cornell");
+    const auto field = bakeField(still, kCornellProbes, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    for (const auto& [roughness, metallic] : {std::pair{1.0f, 0.0f}, {0.2f, 1.0f}})
+    {
+        Scene moved = still;
+        MeshBuilder mesh(moved);
+        const uint32_t material = mesh.material("ball", vec3(0.8f), roughness, metallic);
+        mesh.sphere(vec3(0.0f, 1.3f, -0.3f), 0.2f, 64, 32, material);
+        const auto frame = drawWith(*field, moved, settingsFor());
+        ASSERT_TRUE(frame) << frame.error().message;
+        const ImageSet truth = truthOf(moved, 128);
+        const auto& diffuse = truth.find("diffuse_indirect")->pixels;
+        const auto& glossy = truth.find("glossy_indirect")->pixels;
+        double got = 0.0, asked = 0.0;
+        size_t pixels = 0;
+        for (size_t i = 0; i < frame->albedo.size(); ++i)
+        {
+            // The ball is nearer to the eye than the boxes behind it.
+            if (std::abs(frame->roughness[i] - roughness) > 0.01f || std::abs(frame->albedo[i].x - 0.8f) > 0.01f ||
+                std::abs(frame->albedo[i].z - 0.8f) > 0.01f)
+                continue;
+            ++pixels;
+            got += frame->diffuseIndirect[i].y + frame->glossyIndirect[i].y;
+            asked += diffuse[3 * i + 1] + glossy[3 * i + 1];
+        }
+        ASSERT_GT(pixels, 60u);
+        EXPECT_NEAR(got / asked, 1.0, 0.15) << "roughness " << roughness << ", metallic " << metallic;
+    }
+}
+
+TEST_F(SceneRendererTest, AProbeInAGapAboveALampDoesNotLightTheRoom)
+{
+    Scene scene;
+    scene.name = "lamps";
+    MeshBuilder mesh(scene);
+    const uint32_t wall = mesh.material("wall", vec3(0.7f)), lamp = mesh.emitter("lamp", vec3(12.0f));
+    mesh.box(vec3(-4, -0.1f, -4), vec3(4, 0, 4), wall);
+    mesh.box(vec3(-4, 3, -4), vec3(4, 3.1f, 4), wall);
+    for (const float side : {-4.1f, 4.0f})
+    {
+        mesh.box(vec3(side, 0, -4), vec3(side + 0.1f, 3, 4), wall);
+        mesh.box(vec3(-4, 0, side), vec3(4, 3, side + 0.1f), wall);
+    }
+    for (const float x : {-1.75f, 1.75f})
+        for (const float z : {-1.75f, 1.75f}) mesh.box(vec3(x - 0.2f, 2.9f, z - 0.2f), vec3(x + 0.2f, 2.905f, z + 0.2f), lamp);
+    mesh.camera("view", vec3(0, 1.7f, 3.8f), vec3(0, 1.2f, 0), 63.0f);
+    std::vector<vec3> probes = {{-2.6f, 1.7f, 2.5f}, {2.3f, 1.5f, -2.7f},  {2.6f, 1.5f, 3.0f}, {3.0f, 1.3f, -0.4f},
+                                {-2.3f, 1.4f, 0.2f}, {-0.3f, 1.3f, -2.3f}, {1.2f, 1.3f, 0.4f}};
+    RenderSettings settings = settingsOf(kSide);
+    settings.areaSamples = 64;
+    double means[2] = {};
+    for (double& mean : means)
+    {
+        const auto field = bakeField(scene, probes, 128, 4);
+        ASSERT_TRUE(field) << field.error().message;
+        const auto frame = drawWith(*field, scene, settings);
+        ASSERT_TRUE(frame) << frame.error().message;
+        for (const vec3& light : frame->diffuseIndirect) mean += light.y;
+        probes.insert(probes.end(), {{1.47f, 2.963f, -1.42f}, {-1.92f, 2.949f, -1.98f}, {2.0f, 2.939f, 1.7f}});
+    }
+    EXPECT_NEAR(means[1] / means[0], 1.0, 0.1);
+}
+
+TEST_F(SceneRendererTest, SameFrameTwiceIsTheSameToTheBit)
+{
+    const Scene scene = *makeBuiltinScene("cornell-glossy");
+    RenderSettings settings = settingsFor();
+    settings.glossyRays = 1;
+    const auto a = draw(scene, kCornellProbes, settings), b = draw(scene, kCornellProbes, settings);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->beauty, b->beauty);
+}
+
+TEST_F(SceneRendererTest, OddSizesWork)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    for (auto [width, height] : {std::pair{1u, 1u}, {1u, 67u}, {131u, 3u}})
+    {
+        RenderSettings settings = settingsFor();
+        settings.width = width;
+        settings.height = height;
+        settings.glossyRays = 1;
+        const auto frame = draw(scene, std::span(kCornellProbes).first(1), settings);
+        ASSERT_TRUE(frame) << frame.error().message;
+        for (const vec3& pixel : frame->beauty) EXPECT_TRUE(std::isfinite(pixel.x + pixel.y + pixel.z));
+    }
+}
+
+TEST_F(SceneRendererTest, EmptyFrameIsRefusedWithASentence)
+{
+    RenderSettings settings = settingsFor();
+    settings.width = 0;
+    const auto frame = draw(*makeBuiltinScene("cornell"), std::span(kCornellProbes).first(1), settings);
+    ASSERT_FALSE(frame);
+    EXPECT_NE(frame.error().message.find("0x96"), std::string::npos);
+}
+
+} // namespace
+} // namespace sconce

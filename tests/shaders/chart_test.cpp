@@ -1,0 +1,105 @@
+// Our tracer on octahedral maps: the octants as charts, and its answers beside Embree's.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "bench/opponents/octahedral_field.h"
+#include "bench/race/traced_method.h"
+#include "runtime/field/quality.h"
+#include "runtime/field/tracer_cpu.h"
+#include "tests/support/cornell_field.h"
+#include "tests/support/device.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+const FieldData kNoField;
+
+TEST(Octants, AreProjectiveChartsOfTheOctahedralMap)
+{
+    twin::LightFieldTwin<double> text(kNoField, {});
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 20000; ++i)
+    {
+        const glm::dvec3 p(normal(random), normal(random), normal(random)), n(normal(random), normal(random), normal(random));
+        const int octant = text.octantOf(p);
+        const glm::dvec3 uvw = text.octantCoordinates(octant, p);
+        EXPECT_NEAR(glm::distance(text.octantDirection(octant, uvw), p), 0.0, 1e-12);
+        EXPECT_NEAR(uvw.z, std::abs(p.x) + std::abs(p.y) + std::abs(p.z), 1e-12);
+        const glm::dvec2 onMap = 0.5 * glm::dvec2(uvw) / uvw.z + 0.5;
+        EXPECT_NEAR(glm::distance(onMap, glm::dvec2(text.octahedralFromDirection(p))), 0.0, 1e-12);
+        // Transposes: n . p is the same function of (U, V, W).
+        const glm::dvec3 gradient = text.octantGradient(octant, n);
+        EXPECT_NEAR(glm::dot(gradient, uvw), glm::dot(n, p), 1e-11);
+        EXPECT_NEAR(glm::distance(text.octantNormal(octant, gradient), n), 0.0, 1e-11);
+    }
+}
+
+TEST(OctahedralTrace, AnswersGlossyRaysInTheBox)
+{
+    const RaySet set = cornellRays(20000);
+    Result<FieldData> field = octahedralField(cornell().field, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    twin::LightFieldTwin<float> text(*field, defaultQuality());
+    std::vector<gpu::RayHit> hits;
+    for (size_t i = 0; i < set.size(); ++i) hits.push_back(text.queryRay(set.origins[i], set.directions[i], set.normals[i]));
+    const TraceScore score = scoreTraces(set, tracedRays(hits));
+    EXPECT_GT(score.right1, 0.985);
+    EXPECT_LT(score.leak, 0.004);
+    EXPECT_LT(score.falseHit, 0.008);
+    EXPECT_LT(score.unresolved, 0.012);
+}
+
+TEST(OctahedralTrace, AnswersDoNotDependOnTheLevelsUsed)
+{
+    const RaySet set = cornellRays(5000);
+    Result<FieldData> field = octahedralField(cornell().field, 256);
+    ASSERT_TRUE(field) << field.error().message;
+    gpu::TraceQuality finest = defaultQuality();
+    finest.startLevel = finest.coarsestLevel = 0;
+    twin::LightFieldTwin<float> text(*field, defaultQuality()), plain(*field, finest);
+    int different = 0;
+    for (size_t i = 0; i < set.size(); ++i)
+    {
+        const auto a = text.queryRay(set.origins[i], set.directions[i], set.normals[i]);
+        const auto b = plain.queryRay(set.origins[i], set.directions[i], set.normals[i]);
+        different += a.status != b.status || std::abs(a.t - b.t) > 1e-4f * b.t;
+    }
+    EXPECT_LE(different, 5); // of 5,000
+}
+
+TEST(OctahedralTrace, NeedsCubeFacesAndWholeCells)
+{
+    EXPECT_FALSE(octahedralField(cornell().field, 100));
+    FieldData other = cornell().field;
+    other.info.chart = gpu::kChartOctahedral;
+    EXPECT_FALSE(octahedralField(other, 256));
+}
+
+TEST(OctahedralTrace, DeviceAnswersLikeTheCpu)
+{
+    ValidatedDevice device;
+    auto gpu = Gpu::create(device.host());
+    ASSERT_TRUE(gpu) << gpu.error().message;
+    Tracer how;
+    how.octahedral = 256;
+    auto method = TracedMethod::create(**gpu, cornell().field, how, "octahedral");
+    ASSERT_TRUE(method) << method.error().message;
+    const std::vector<gpu::Ray> rays = (*method)->raysOf(cornellRays(10000));
+    std::vector<gpu::RayHit> got(rays.size()), cpu(rays.size());
+    ASSERT_TRUE((*method)->trace(rays, got));
+    (*method)->traceOnCpu(rays, cpu);
+    size_t different = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+        different += cpu[i].status != got[i].status || cpu[i].probe != got[i].probe || cpu[i].distanceReads != got[i].distanceReads ||
+                     std::abs(cpu[i].t - got[i].t) > 2e-5f * cpu[i].t;
+    EXPECT_LE(different, rays.size() / 2000);
+}
+
+} // namespace
+} // namespace sconce
