@@ -5,7 +5,8 @@
     python3 bench/pages/tables.py --check    changes nothing; exits 1 and names page, line, what stands there and what the file gives
 
 In a page, `<!-- table: FILE VIEW -->` ... `<!-- /table -->` holds a table of bench/results/FILE, by the view of that name in views.json;
-`<!--=FILE:ROW.KEY-->figure<!--/-->` holds one figure (FILE without its ending; of a .csv, ROW is the first cell's slug).
+`<!--=FILE:ROW.KEY-->figure<!--/-->` holds one figure (FILE without its ending, none for findings.json; of a .csv, ROW is the first
+cell's slug).
 
 A result file holds what was printed, to the digit: `what`, `command`, `commit`, `machine`, perhaps `notes`, and `rows`, each with its own
 keys. A .csv has the same head as lines `# key: value`. A row of findings.json names its own command and commit.
@@ -24,7 +25,7 @@ BYTES_OF_DOCS = 60_000
 SKIPPED_FOLDERS = {"build", "out", "shared"} # of the root
 
 TABLE = re.compile(r"^<!-- table: (\S+) (\S+) -->\n(.*?)^<!-- /table -->$", re.M | re.S)
-FIGURE = re.compile(r"<!--=(\w+):(\w+)\.(\w+)-->(.*?)<!--/-->", re.S)
+FIGURE = re.compile(r"<!--=(?:(\w+):)?(\w+)\.(\w+)-->(.*?)<!--/-->", re.S)
 MEASURED = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?\s?%|(?<![\w.])\d+\.\d+(?![\w.]*\w*\()")
 
 # Numbers in prose that no run printed, with the reason why each may stand there.
@@ -189,6 +190,7 @@ def filled(path, text, results, views, faults):
 
     def figure(match):
         stem, row, key, old = match.groups()
+        stem = stem or "findings"
         try:
             new = results.value(stem, row, key)
         except KeyError as error:
@@ -196,7 +198,7 @@ def filled(path, text, results, views, faults):
             return match[0]
         if new != old:
             faults.append((line_of(text, match.start()), f"{stem}:{row}.{key}: there stands '{old}', the file gives '{new}'"))
-        return f"<!--={stem}:{row}.{key}-->{new}<!--/-->"
+        return match[0][: match.start(4) - match.start()] + new + "<!--/-->"
 
     figured = FIGURE.sub(figure, text) # first: it moves no line
     return TABLE.sub(table, figured)
@@ -318,7 +320,7 @@ def result_faults(folder, tree, pages):
         if not result["rows"]:
             faults.append((path, 1, "has no rows"))
         if path.name == "findings.json":
-            faults += [(path, 1, f"row '{key}' is quoted by no page") for key in result["rows"] if f"<!--=findings:{key}." not in pages]
+            faults += [(path, 1, f"row '{key}' is quoted by no page") for key in result["rows"] if not re.search(rf"<!--=(?:findings:)?{key}\.", pages)]
     return faults
 
 
