@@ -31,7 +31,7 @@ std::optional<Baseline> baselineNamed(std::string_view name);
 float baselineOffset(Baseline baseline);
 
 /// Texels a side that a texel of the low-resolution map covers: the published 16 for b0, for the others what is fastest on maps of 256 to
-/// 1024 texels a side (docs/measurements.md).
+/// 1024 texels a side (bench/results/low_factor.json).
 uint32_t bestLowFactor(Baseline baseline);
 
 /// What an opponent reads, made from a baked field: b0 and b0plus want octahedral maps on a grid (b0: of power-of-two counts),
