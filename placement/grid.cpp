@@ -1,7 +1,9 @@
+#include "placement/grid.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "placement/place.h"
+#include "base/limits.h"
 
 namespace sconce
 {

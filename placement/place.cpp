@@ -10,6 +10,7 @@
 
 #include "base/random.h"
 #include "placement/ball_shrinking.h"
+#include "placement/grid.h"
 #include "placement/optimise.h"
 #include "placement/select.h"
 #include "placement/skeleton.h"

@@ -69,10 +69,4 @@ struct PlaceReport
 /// Cost: sdf 5 to 60 s on two cores for 0.1 to 2 million triangles.
 Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, PlaceReport& report, const Progress& progress = {});
 
-/// The grid of about `count` points (within 15 %) whose cells in the bounds are most nearly cubes.
-glm::ivec3 gridShape(const Bounds& bounds, uint32_t count);
-
-/// A grid at the centres of equal cells of the bounds.
-ProbeGrid gridIn(const Bounds& bounds, glm::ivec3 count);
-
 } // namespace sconce

@@ -32,9 +32,7 @@ uint64_t Device::bytes() const
 
 Result<GpuTimer> GpuTimer::create(const Device& device, uint32_t maxScopes)
 {
-    auto timer = create(device.gpu(), maxScopes);
-    if (timer) timer->keptAlive = device.gpu().shared_from_this();
-    return timer;
+    return create(device.gpu(), maxScopes);
 }
 
 Result<LightField> LightField::load(const Device& device, const std::filesystem::path& file, const Quality& quality)

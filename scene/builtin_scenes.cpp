@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/builtin_town.h"
 #include "scene/mesh_builder.h"
 
 namespace sconce

@@ -23,7 +23,4 @@ std::vector<BuiltinScene> builtinScenes();
 /// that builtinScenes() doesn't list.
 Result<Scene> makeBuiltinScene(std::string_view name);
 
-/// The town is a file of its own (builtin_town.cpp); reached through makeBuiltinScene("town").
-Scene makeTown();
-
 } // namespace sconce

@@ -1,4 +1,4 @@
-#include "scene/builtin_scenes.h"
+#include "scene/builtin_town.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "svo/octree_plan.h"
+#include "svo/pack_octree.h"
 
 namespace sconce
 {

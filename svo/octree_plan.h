@@ -27,10 +27,4 @@ Result<OctreePlan> planOctree(const ProbeMaps& maps, const OctreeSettings& setti
 
 constexpr int kFillSteps = 2; // voxels that lists spread into what no probe sees; beyond that, nodes take what makes them uniform. Even
 
-/// Lists of the nodes of all levels, the finest (the voxels) first, x fastest.
-using LevelLists = std::vector<std::vector<glm::uvec2>>;
-
-/// The tree in its texture. Equal bricks are stored once; a node without a list takes that of a sibling, a top cell that of a nearest one.
-Octree packOctree(const OctreePlan& plan, const LevelLists& levels);
-
 } // namespace sconce

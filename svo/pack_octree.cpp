@@ -1,9 +1,9 @@
+#include "svo/pack_octree.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-
-#include "svo/octree_plan.h"
 
 namespace sconce
 {

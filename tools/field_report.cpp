@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "bench/opponents/baselines.h"
+#include "runtime/bake/prefilter.h"
 #include "runtime/field/light_field_file.h"
 
 namespace sconce::tools

@@ -9,6 +9,8 @@
 #include "base/numbers.h"
 #include "base/parallel.h"
 #include "runtime/bake/host_memory.h"
+#include "runtime/bake/patches.h"
+#include "runtime/bake/prefilter.h"
 #include "runtime/bake/probe_baker.h"
 #include "runtime/bake/probe_clearance.h"
 #include "runtime/field/field_space.h"

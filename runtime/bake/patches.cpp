@@ -1,8 +1,9 @@
+#include "runtime/bake/patches.h"
+
 // What a probe sees, as a few discs that throw diffuse light: the patches of shaders/shared/light_lookup.h.
 #include <cmath>
 
 #include "base/parallel.h"
-#include "runtime/field/field_data.h"
 #include "runtime/field/tracer_cpu.h"
 
 namespace sconce

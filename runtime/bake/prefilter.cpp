@@ -1,9 +1,10 @@
+#include "runtime/bake/prefilter.h"
+
 // Radiance prefiltered by round lobes: the maps of shaders/shared/prefiltered.h.
 #include <cmath>
 #include <span>
 
 #include "base/parallel.h"
-#include "runtime/field/field_data.h"
 #include "runtime/field/tracer_cpu.h"
 
 namespace sconce

@@ -55,14 +55,6 @@ inline constexpr uint32_t kIrradianceWordsPerProbe = 2 * gpu::kIrradianceSize * 
 /// Texels a side of a chart's map where an octahedral one has `resolution`: cube faces have half of it.
 uint32_t chartSize(uint32_t chart, uint32_t resolution);
 
-/// Fills `prefiltered` from `radiance`; on any number of threads the same bytes. Cost: about 40 ms a probe and core.
-void prefilterRadiance(FieldData& field);
-
-/// Fills `patches`; on any number of threads the same bytes. Cost: a few ms a probe and core.
-/// @param surfaces  reflectance and shading normal a radiance texel, 0: sky
-/// @param emitted   emission a radiance texel, R11G11B10F; empty: the scene has no emitters
-void makePatches(FieldData& field, std::span<const uint32_t> surfaces, std::span<const uint32_t> emitted);
-
 /// Bytes that every further probe adds to a light field, index apart: what a budget of memory is divided by.
 size_t bytesPerProbe(uint32_t chart, uint32_t resolution);
 

@@ -5,6 +5,7 @@
 
 #include "runtime/vulkan/pipeline.h"
 #include "svo/octree_plan.h"
+#include "svo/pack_octree.h"
 
 #include "spirv/octree_collapse_comp.h"
 #include "spirv/octree_fill_comp.h"

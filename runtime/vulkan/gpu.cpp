@@ -22,59 +22,6 @@ bool isDepth(VkFormat format)
 
 } // namespace
 
-void Buffer::swap(Buffer& other) noexcept
-{
-    std::swap(gpu, other.gpu);
-    std::swap(buffer, other.buffer);
-    std::swap(view, other.view);
-    std::swap(deviceAddress, other.deviceAddress);
-    std::swap(bytes, other.bytes);
-    std::swap(name, other.name);
-    std::swap(piece, other.piece);
-}
-
-Buffer& Buffer::operator=(Buffer&& other) noexcept
-{
-    Buffer(std::move(other)).swap(*this);
-    return *this;
-}
-
-Buffer::~Buffer()
-{
-    if (!gpu) return;
-    if (view) gpu->vk.DestroyBufferView(gpu->host.device, view, gpu->host.allocationCallbacks);
-    gpu->vk.DestroyBuffer(gpu->host.device, buffer, gpu->host.allocationCallbacks);
-    gpu->memory().release(piece);
-}
-
-void GpuImage::swap(GpuImage& other) noexcept
-{
-    std::swap(gpu, other.gpu);
-    std::swap(image, other.image);
-    std::swap(wholeView, other.wholeView);
-    std::swap(layerViews, other.layerViews);
-    std::swap(made, other.made);
-    std::swap(name, other.name);
-    std::swap(piece, other.piece);
-}
-
-GpuImage& GpuImage::operator=(GpuImage&& other) noexcept
-{
-    GpuImage(std::move(other)).swap(*this);
-    return *this;
-}
-
-GpuImage::~GpuImage()
-{
-    if (!gpu) return;
-    const VkDevice device = gpu->host.device;
-    const VkAllocationCallbacks* callbacks = gpu->host.allocationCallbacks;
-    for (VkImageView view : layerViews) gpu->vk.DestroyImageView(device, view, callbacks);
-    gpu->vk.DestroyImageView(device, wholeView, callbacks);
-    gpu->vk.DestroyImage(device, image, callbacks);
-    gpu->memory().release(piece);
-}
-
 VkImageAspectFlags GpuImage::aspect() const
 {
     return isDepth(made.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
@@ -119,15 +66,15 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
 
     VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     poolInfo.queueFamilyIndex = host.queueFamily;
-    VkResult result = gpu->vk.CreateCommandPool(host.device, &poolInfo, host.allocationCallbacks, &gpu->commandPool);
+    VkResult result = gpu->vk.CreateCommandPool(host.device, &poolInfo, host.allocationCallbacks, gpu->commandPool.fresh(*gpu));
     if (result != VK_SUCCESS) return gpu->failure("vkCreateCommandPool", result);
     VkCommandBufferAllocateInfo commandInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    commandInfo.commandPool = gpu->commandPool;
+    commandInfo.commandPool = gpu->commandPool.get();
     commandInfo.commandBufferCount = 1;
     result = gpu->vk.AllocateCommandBuffers(host.device, &commandInfo, &gpu->commands);
     if (result != VK_SUCCESS) return gpu->failure("vkAllocateCommandBuffers", result);
     const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = gpu->vk.CreateFence(host.device, &fenceInfo, host.allocationCallbacks, &gpu->fence);
+    result = gpu->vk.CreateFence(host.device, &fenceInfo, host.allocationCallbacks, gpu->fence.fresh(*gpu));
     if (result != VK_SUCCESS) return gpu->failure("vkCreateFence", result);
     if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
     {
@@ -142,10 +89,8 @@ Gpu::Gpu(const HostVulkan& lent) : host(lent) {}
 
 Gpu::~Gpu()
 {
-    staging = Buffer();
+    staging = Buffer(); // before the pool of memory, which is declared before it
     scan.reset();
-    if (fence) vk.DestroyFence(host.device, fence, host.allocationCallbacks);
-    if (commandPool) vk.DestroyCommandPool(host.device, commandPool, host.allocationCallbacks);
 }
 
 Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage, MemoryUse use, const char* what)
@@ -155,20 +100,19 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     info.usage = extraUsage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                  VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
     Buffer made;
-    made.gpu = this;
     made.bytes = info.size;
     made.name = what;
-    VkResult result = vk.CreateBuffer(host.device, &info, host.allocationCallbacks, &made.buffer);
+    VkResult result = vk.CreateBuffer(host.device, &info, host.allocationCallbacks, made.buffer.fresh(*this));
     if (result != VK_SUCCESS) return failure("vkCreateBuffer", result);
     VkMemoryRequirements needs;
-    vk.GetBufferMemoryRequirements(host.device, made.buffer, &needs);
+    vk.GetBufferMemoryRequirements(host.device, made.buffer.get(), &needs);
     auto piece = pool->allocate(needs, use, true, what);
     if (!piece) return piece.error();
-    made.piece = *piece;
-    result = vk.BindBufferMemory(host.device, made.buffer, made.piece.memory(), made.piece.offset);
+    made.memory = OwnedPiece(*pool, *piece);
+    result = vk.BindBufferMemory(host.device, made.buffer.get(), made.memory.piece().memory(), made.memory.piece().offset);
     if (result != VK_SUCCESS) return failure("vkBindBufferMemory", result);
     VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
-    addressInfo.buffer = made.buffer;
+    addressInfo.buffer = made.buffer.get();
     made.deviceAddress = vk.GetBufferDeviceAddress(host.device, &addressInfo);
     if (scan) NanScan::note(made);
     return made;
@@ -185,7 +129,7 @@ Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
     info.buffer = buffer.handle();
     info.format = format;
     info.range = VK_WHOLE_SIZE;
-    const VkResult result = vk.CreateBufferView(host.device, &info, host.allocationCallbacks, &buffer.view);
+    const VkResult result = vk.CreateBufferView(host.device, &info, host.allocationCallbacks, buffer.view.fresh(*this));
     return result == VK_SUCCESS ? success() : Status(failure("vkCreateBufferView", result));
 }
 
@@ -208,45 +152,42 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
                                                     std::to_string(desc.layers) + " layers; the device allows " + std::to_string(side) +
                                                     " and " + std::to_string(limits.maxImageArrayLayers) + "; lower the resolution"};
     GpuImage made;
-    made.gpu = this;
     made.made = desc;
     made.name = what;
-    VkResult result = vk.CreateImage(host.device, &info, host.allocationCallbacks, &made.image);
+    VkResult result = vk.CreateImage(host.device, &info, host.allocationCallbacks, made.image.fresh(*this));
     if (result != VK_SUCCESS) return failure("vkCreateImage", result);
     VkMemoryRequirements needs;
-    vk.GetImageMemoryRequirements(host.device, made.image, &needs);
+    vk.GetImageMemoryRequirements(host.device, made.image.get(), &needs);
     auto piece = pool->allocate(needs, MemoryUse::device, false, what);
     if (!piece) return piece.error();
-    made.piece = *piece;
-    result = vk.BindImageMemory(host.device, made.image, made.piece.memory(), made.piece.offset);
+    made.memory = OwnedPiece(*pool, *piece);
+    result = vk.BindImageMemory(host.device, made.image.get(), made.memory.piece().memory(), made.memory.piece().offset);
     if (result != VK_SUCCESS) return failure("vkBindImageMemory", result);
     if (scan) NanScan::note(made);
     const VkImageUsageFlags viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     if (!(desc.usage & viewable)) return made;
     VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-    view.image = made.image;
+    view.image = made.image.get();
     view.viewType = volume ? VK_IMAGE_VIEW_TYPE_3D : desc.array || desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = desc.format;
     view.subresourceRange = {made.aspect(), 0, desc.mips, 0, desc.layers};
-    result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, &made.wholeView);
+    result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, made.wholeView.fresh(*this));
     if (result != VK_SUCCESS) return failure("vkCreateImageView", result);
     if (!desc.array) return made;
     for (uint32_t layer = 0; layer < desc.layers; ++layer)
     {
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
         view.subresourceRange = {made.aspect(), 0, 1, layer, 1};
-        VkImageView one = VK_NULL_HANDLE;
-        result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, &one);
+        result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, made.layerViews.emplace_back().fresh(*this));
         if (result != VK_SUCCESS) return failure("vkCreateImageView", result);
-        made.layerViews.push_back(one);
     }
     return made;
 }
 
 Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
 {
-    VkResult result = vk.ResetCommandPool(host.device, commandPool, 0);
+    VkResult result = vk.ResetCommandPool(host.device, commandPool.get(), 0);
     if (result != VK_SUCCESS) return failure("vkResetCommandPool", result);
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -258,11 +199,12 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
     info.pCommandBuffers = &commands;
-    result = vk.QueueSubmit(host.queue, 1, &info, fence);
+    result = vk.QueueSubmit(host.queue, 1, &info, fence.get());
     if (result != VK_SUCCESS) return failure("vkQueueSubmit", result);
-    result = vk.WaitForFences(host.device, 1, &fence, VK_TRUE, UINT64_MAX);
+    const VkFence waited = fence.get();
+    result = vk.WaitForFences(host.device, 1, &waited, VK_TRUE, UINT64_MAX);
     if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
-    result = vk.ResetFences(host.device, 1, &fence);
+    result = vk.ResetFences(host.device, 1, &waited);
     if (result != VK_SUCCESS) return failure("vkResetFences", result);
     return scan ? scan->findings() : success();
 }
@@ -357,62 +299,6 @@ void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, cons
     info.imageMemoryBarrierCount = 1;
     info.pImageMemoryBarriers = &barrier;
     gpu.vk.CmdPipelineBarrier2(cmd, &info);
-}
-
-Result<GpuTimer> GpuTimer::create(Gpu& gpu, uint32_t maxScopes)
-{
-    GpuTimer timer;
-    timer.gpu = &gpu;
-    timer.names.resize(maxScopes);
-    if (!gpu.timestamps) return timer;
-    VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = 2 * maxScopes;
-    const VkResult result = gpu.vk.CreateQueryPool(gpu.host.device, &info, gpu.host.allocationCallbacks, &timer.queries);
-    if (result != VK_SUCCESS) return gpu.failure("vkCreateQueryPool", result);
-    return timer;
-}
-
-GpuTimer::GpuTimer(GpuTimer&& other) noexcept
-    : gpu(std::exchange(other.gpu, nullptr)), keptAlive(std::move(other.keptAlive)), queries(std::exchange(other.queries, VK_NULL_HANDLE)),
-      names(std::move(other.names)), used(std::exchange(other.used, 0))
-{
-}
-
-GpuTimer::~GpuTimer()
-{
-    if (queries) gpu->vk.DestroyQueryPool(gpu->host.device, queries, gpu->host.allocationCallbacks);
-}
-
-void GpuTimer::reset(VkCommandBuffer cmd)
-{
-    used = 0;
-    if (queries) gpu->vk.CmdResetQueryPool(cmd, queries, 0, 2 * uint32_t(names.size()));
-}
-
-void GpuTimer::begin(VkCommandBuffer cmd, const char* name)
-{
-    assert(used < names.size());
-    names[used] = name;
-    if (queries) gpu->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, 2 * used);
-}
-
-void GpuTimer::end(VkCommandBuffer cmd)
-{
-    if (queries) gpu->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, 2 * used + 1);
-    ++used;
-}
-
-std::vector<GpuTimer::Scope> GpuTimer::read() const
-{
-    std::vector<Scope> scopes;
-    if (!queries || used == 0) return scopes;
-    std::vector<uint64_t> ticks(2 * used);
-    gpu->vk.GetQueryPoolResults(gpu->host.device, queries, 0, 2 * used, ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
-                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
-    for (uint32_t i = 0; i < used; ++i)
-        scopes.push_back({names[i], double(ticks[2 * i + 1] - ticks[2 * i]) * double(gpu->properties.limits.timestampPeriod) * 1e-6});
-    return scopes;
 }
 
 } // namespace sconce

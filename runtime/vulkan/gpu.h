@@ -8,6 +8,7 @@
 
 #include "runtime/vulkan/gpu_memory.h"
 #include "runtime/vulkan/gpu_timer.h"
+#include "runtime/vulkan/handle.h"
 
 namespace sconce
 {
@@ -19,29 +20,22 @@ class NanScan;
 class Buffer
 {
 public:
-    Buffer() = default;
-    Buffer(Buffer&& other) noexcept { swap(other); }
-    Buffer& operator=(Buffer&& other) noexcept;
-    ~Buffer();
-
-    VkBuffer handle() const { return buffer; }
+    VkBuffer handle() const { return buffer.get(); }
     VkDeviceAddress address() const { return deviceAddress; }
     VkDeviceSize size() const { return bytes; }
-    std::byte* mapped() const { return piece.mapped(); } // null for device memory
-    const char* what() const { return name; }            // as it was made with
-    VkBufferView texels() const { return view; }         // null unless made by makeTexelBuffer
-    explicit operator bool() const { return buffer != VK_NULL_HANDLE; }
+    std::byte* mapped() const { return memory.mapped(); } // null for device memory
+    const char* what() const { return name; }             // as it was made with
+    VkBufferView texels() const { return view.get(); }    // null unless made by makeTexelBuffer
+    explicit operator bool() const { return bool(buffer); }
 
 private:
     friend class Gpu;
-    void swap(Buffer& other) noexcept;
-    Gpu* gpu = nullptr;
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkBufferView view = VK_NULL_HANDLE;
+    OwnedPiece memory; // released after what is bound to it
+    Handle<VkBuffer, &VulkanFunctions::DestroyBuffer> buffer;
+    Handle<VkBufferView, &VulkanFunctions::DestroyBufferView> view;
     VkDeviceAddress deviceAddress = 0;
     VkDeviceSize bytes = 0;
     const char* name = "";
-    GpuMemory::Piece piece;
 };
 
 struct ImageDesc
@@ -59,30 +53,24 @@ struct ImageDesc
 class GpuImage
 {
 public:
-    GpuImage() = default;
-    GpuImage(GpuImage&& other) noexcept { swap(other); }
-    GpuImage& operator=(GpuImage&& other) noexcept;
-    ~GpuImage();
-
-    VkImage handle() const { return image; }
-    VkImageView view() const { return wholeView; }
+    VkImage handle() const { return image.get(); }
+    VkImageView view() const { return wholeView.get(); }
     /// A view of one layer, for rendering into it; made with ImageDesc::array.
-    VkImageView layerView(uint32_t layer) const { return layerViews[layer]; }
+    VkImageView layerView(uint32_t layer) const { return layerViews[layer].get(); }
     const ImageDesc& desc() const { return made; }
     const char* what() const { return name; }
     VkImageAspectFlags aspect() const;
-    explicit operator bool() const { return image != VK_NULL_HANDLE; }
+    explicit operator bool() const { return bool(image); }
 
 private:
     friend class Gpu;
-    void swap(GpuImage& other) noexcept;
-    Gpu* gpu = nullptr;
-    VkImage image = VK_NULL_HANDLE;
-    VkImageView wholeView = VK_NULL_HANDLE;
-    std::vector<VkImageView> layerViews;
+    using View = Handle<VkImageView, &VulkanFunctions::DestroyImageView>;
+    OwnedPiece memory; // released after what is bound to it
+    Handle<VkImage, &VulkanFunctions::DestroyImage> image;
+    View wholeView;
+    std::vector<View> layerViews;
     ImageDesc made;
     const char* name = "";
-    GpuMemory::Piece piece;
 };
 
 /// A host's device with its functions, the memory seam and one-shot submits. Everything made from it must go before it.
@@ -139,12 +127,17 @@ private:
     Status ensureStaging();
     Status makeTexelView(Buffer& buffer, VkFormat format);
     std::unique_ptr<GpuMemory> pool;
-    VkCommandPool commandPool = VK_NULL_HANDLE;
+    Handle<VkCommandPool, &VulkanFunctions::DestroyCommandPool> commandPool;
     VkCommandBuffer commands = VK_NULL_HANDLE;
-    VkFence fence = VK_NULL_HANDLE;
+    Handle<VkFence, &VulkanFunctions::DestroyFence> fence;
     Buffer staging;
     std::unique_ptr<NanScan> scan;
 };
+
+template <class T, auto Destroy> Handle<T, Destroy>::~Handle()
+{
+    if (value != T{}) (gpu->vk.*Destroy)(gpu->host.device, value, gpu->host.allocationCallbacks);
+}
 
 /// All memory writes of the first stages are visible to the second; enough wherever a pass follows a pass.
 void memoryBarrier(const Gpu& gpu, VkCommandBuffer cmd, VkPipelineStageFlags2 from, VkAccessFlags2 written, VkPipelineStageFlags2 to,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <list>
+#include <utility>
 #include <vector>
 
 #include <vulkan/vulkan.h>
@@ -59,6 +60,32 @@ private:
     uint64_t heldBytes = 0;
     uint64_t peakBytes = 0;
     uint64_t budgetBytes = 0;
+};
+
+/// A piece that is given back; move-only. It must go before its GpuMemory.
+class OwnedPiece
+{
+public:
+    OwnedPiece() = default;
+    OwnedPiece(GpuMemory& from, const GpuMemory::Piece& taken) : pool(&from), held(taken) {}
+    OwnedPiece(OwnedPiece&& other) noexcept : pool(std::exchange(other.pool, nullptr)), held(std::exchange(other.held, {})) {}
+    OwnedPiece& operator=(OwnedPiece&& other) noexcept
+    {
+        OwnedPiece taken(std::move(other));
+        std::swap(pool, taken.pool);
+        std::swap(held, taken.held);
+        return *this;
+    }
+    ~OwnedPiece()
+    {
+        if (pool) pool->release(held);
+    }
+    const GpuMemory::Piece& piece() const { return held; }
+    std::byte* mapped() const { return pool ? held.mapped() : nullptr; }
+
+private:
+    GpuMemory* pool = nullptr;
+    GpuMemory::Piece held;
 };
 
 } // namespace sconce

@@ -21,8 +21,9 @@ public:
     /// Without timestamps in the queue it is made all the same, and read() gives nothing. Errors: deviceFailure, outOfMemory.
     static Result<GpuTimer> create(const Device& device, uint32_t maxScopes);
     static Result<GpuTimer> create(Gpu& gpu, uint32_t maxScopes);
-    GpuTimer(GpuTimer&& other) noexcept;
-    GpuTimer& operator=(GpuTimer&&) = delete;
+
+    GpuTimer(GpuTimer&&) noexcept;
+    GpuTimer& operator=(GpuTimer&&) noexcept;
     ~GpuTimer();
 
     void reset(VkCommandBuffer cmd); // first in a command buffer, outside rendering
@@ -38,12 +39,9 @@ public:
     std::vector<Scope> read() const;
 
 private:
-    GpuTimer() = default;
-    Gpu* gpu = nullptr;
-    std::shared_ptr<Gpu> keptAlive; // where it was made from a Device
-    VkQueryPool queries = VK_NULL_HANDLE;
-    std::vector<const char*> names; // sized once
-    uint32_t used = 0;
+    struct State;
+    explicit GpuTimer(std::unique_ptr<State> made);
+    std::unique_ptr<State> state;
 };
 
 } // namespace sconce

@@ -5,28 +5,6 @@
 namespace sconce
 {
 
-void DescriptorSet::swap(DescriptorSet& other) noexcept
-{
-    std::swap(gpu, other.gpu);
-    std::swap(setLayout, other.setLayout);
-    std::swap(pool, other.pool);
-    std::swap(set, other.set);
-    std::swap(bindings, other.bindings);
-}
-
-DescriptorSet& DescriptorSet::operator=(DescriptorSet&& other) noexcept
-{
-    DescriptorSet(std::move(other)).swap(*this);
-    return *this;
-}
-
-DescriptorSet::~DescriptorSet()
-{
-    if (!gpu) return;
-    if (pool) gpu->vk.DestroyDescriptorPool(gpu->host.device, pool, gpu->host.allocationCallbacks);
-    if (setLayout) gpu->vk.DestroyDescriptorSetLayout(gpu->host.device, setLayout, gpu->host.allocationCallbacks);
-}
-
 Result<DescriptorSet> DescriptorSet::create(Gpu& gpu, std::span<const Binding> bindings)
 {
     DescriptorSet made;
@@ -42,18 +20,20 @@ Result<DescriptorSet> DescriptorSet::create(Gpu& gpu, std::span<const Binding> b
     VkDescriptorSetLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     layoutInfo.bindingCount = uint32_t(layout.size());
     layoutInfo.pBindings = layout.data();
-    VkResult result = gpu.vk.CreateDescriptorSetLayout(gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks, &made.setLayout);
+    VkResult result =
+        gpu.vk.CreateDescriptorSetLayout(gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks, made.setLayout.fresh(gpu));
     if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorSetLayout", result);
     VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     poolInfo.maxSets = 1;
     poolInfo.poolSizeCount = uint32_t(sizes.size());
     poolInfo.pPoolSizes = sizes.data();
-    result = gpu.vk.CreateDescriptorPool(gpu.host.device, &poolInfo, gpu.host.allocationCallbacks, &made.pool);
+    result = gpu.vk.CreateDescriptorPool(gpu.host.device, &poolInfo, gpu.host.allocationCallbacks, made.pool.fresh(gpu));
     if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorPool", result);
     VkDescriptorSetAllocateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-    setInfo.descriptorPool = made.pool;
+    setInfo.descriptorPool = made.pool.get();
     setInfo.descriptorSetCount = 1;
-    setInfo.pSetLayouts = &made.setLayout;
+    const VkDescriptorSetLayout setLayout = made.setLayout.get();
+    setInfo.pSetLayouts = &setLayout;
     result = gpu.vk.AllocateDescriptorSets(gpu.host.device, &setInfo, &made.set);
     if (result != VK_SUCCESS) return gpu.failure("vkAllocateDescriptorSets", result);
     return made;
@@ -99,23 +79,16 @@ namespace
 /// A shader module for as long as a pipeline is being made.
 struct Module
 {
-    Gpu& gpu;
-    VkShaderModule handle = VK_NULL_HANDLE;
+    Handle<VkShaderModule, &VulkanFunctions::DestroyShaderModule> handle;
     VkResult result = VK_SUCCESS;
 
-    Module(Gpu& owner, Spirv code) : gpu(owner)
+    Module(const Gpu& gpu, Spirv code)
     {
         if (code.empty()) return;
         VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
         info.codeSize = code.size_bytes();
         info.pCode = code.data();
-        result = gpu.vk.CreateShaderModule(gpu.host.device, &info, gpu.host.allocationCallbacks, &handle);
-    }
-    Module(const Module&) = delete;
-    Module& operator=(const Module&) = delete;
-    ~Module()
-    {
-        if (handle) gpu.vk.DestroyShaderModule(gpu.host.device, handle, gpu.host.allocationCallbacks);
+        result = gpu.vk.CreateShaderModule(gpu.host.device, &info, gpu.host.allocationCallbacks, handle.fresh(gpu));
     }
 };
 
@@ -135,35 +108,13 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, const Mod
 {
     VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
     info.stage = stage;
-    info.module = module.handle;
+    info.module = module.handle.get();
     info.pName = "main";
     info.pSpecializationInfo = specialization.entries.empty() ? nullptr : &specialization.info;
     return info;
 }
 
 } // namespace
-
-void Pipeline::swap(Pipeline& other) noexcept
-{
-    std::swap(gpu, other.gpu);
-    std::swap(pipeline, other.pipeline);
-    std::swap(pipelineLayout, other.pipelineLayout);
-    std::swap(bindPoint, other.bindPoint);
-    std::swap(stages, other.stages);
-}
-
-Pipeline& Pipeline::operator=(Pipeline&& other) noexcept
-{
-    Pipeline(std::move(other)).swap(*this);
-    return *this;
-}
-
-Pipeline::~Pipeline()
-{
-    if (!gpu) return;
-    if (pipeline) gpu->vk.DestroyPipeline(gpu->host.device, pipeline, gpu->host.allocationCallbacks);
-    if (pipelineLayout) gpu->vk.DestroyPipelineLayout(gpu->host.device, pipelineLayout, gpu->host.allocationCallbacks);
-}
 
 Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes)
 {
@@ -173,7 +124,8 @@ Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_
     info.pSetLayouts = sets.data();
     info.pushConstantRangeCount = pushBytes > 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
-    const VkResult result = gpu->vk.CreatePipelineLayout(gpu->host.device, &info, gpu->host.allocationCallbacks, &pipelineLayout);
+    const VkResult result =
+        gpu->vk.CreatePipelineLayout(gpu->host.device, &info, gpu->host.allocationCallbacks, pipelineLayout.fresh(*gpu));
     if (result != VK_SUCCESS) return gpu->failure("vkCreatePipelineLayout", result);
     return success();
 }
@@ -190,9 +142,9 @@ Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDes
     const Specialization constants(specialization);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, constants);
-    info.layout = made.pipelineLayout;
+    info.layout = made.pipelineLayout.get();
     const VkResult result =
-        gpu.vk.CreateComputePipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, &made.pipeline);
+        gpu.vk.CreateComputePipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, made.pipeline.fresh(gpu));
     if (result != VK_SUCCESS) return gpu.failure("vkCreateComputePipelines", result);
     return made;
 }
@@ -251,35 +203,24 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     info.pDepthStencilState = &depth;
     info.pColorBlendState = &color;
     info.pDynamicState = &dynamic;
-    info.layout = made.pipelineLayout;
+    info.layout = made.pipelineLayout.get();
     const VkResult result =
-        gpu.vk.CreateGraphicsPipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, &made.pipeline);
+        gpu.vk.CreateGraphicsPipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, made.pipeline.fresh(gpu));
     if (result != VK_SUCCESS) return gpu.failure("vkCreateGraphicsPipelines", result);
     return made;
 }
 
 void Pipeline::bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets) const
 {
-    gpu->vk.CmdBindPipeline(cmd, bindPoint, pipeline);
-    if (!sets.empty()) gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, pipelineLayout, 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
-}
-
-Sampler& Sampler::operator=(Sampler&& other) noexcept
-{
-    Sampler(std::move(other)).swap(*this);
-    return *this;
-}
-
-Sampler::~Sampler()
-{
-    if (gpu && sampler) gpu->vk.DestroySampler(gpu->host.device, sampler, gpu->host.allocationCallbacks);
+    gpu->vk.CmdBindPipeline(cmd, bindPoint, pipeline.get());
+    if (!sets.empty())
+        gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, pipelineLayout.get(), 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
 }
 
 Result<Sampler> Sampler::create(Gpu& gpu, const VkSamplerCreateInfo& info)
 {
     Sampler made;
-    made.gpu = &gpu;
-    const VkResult result = gpu.vk.CreateSampler(gpu.host.device, &info, gpu.host.allocationCallbacks, &made.sampler);
+    const VkResult result = gpu.vk.CreateSampler(gpu.host.device, &info, gpu.host.allocationCallbacks, made.sampler.fresh(gpu));
     if (result != VK_SUCCESS) return gpu.failure("vkCreateSampler", result);
     return made;
 }

@@ -19,22 +19,17 @@ public:
         VkShaderStageFlags stages = VK_SHADER_STAGE_ALL;
     };
     static Result<DescriptorSet> create(Gpu& gpu, std::span<const Binding> bindings);
-    DescriptorSet() = default;
-    DescriptorSet(DescriptorSet&& other) noexcept { swap(other); }
-    DescriptorSet& operator=(DescriptorSet&& other) noexcept;
-    ~DescriptorSet();
 
-    VkDescriptorSetLayout layout() const { return setLayout; }
+    VkDescriptorSetLayout layout() const { return setLayout.get(); }
     VkDescriptorSet handle() const { return set; }
     void write(uint32_t binding, const Buffer& buffer); // a texel buffer by its view
     void write(uint32_t binding, VkImageView view, VkImageLayout imageLayout, VkSampler sampler = VK_NULL_HANDLE);
 
 private:
-    void swap(DescriptorSet& other) noexcept;
     VkDescriptorType typeOf(uint32_t binding) const;
     Gpu* gpu = nullptr;
-    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-    VkDescriptorPool pool = VK_NULL_HANDLE;
+    Handle<VkDescriptorSetLayout, &VulkanFunctions::DestroyDescriptorSetLayout> setLayout;
+    Handle<VkDescriptorPool, &VulkanFunctions::DestroyDescriptorPool> pool;
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::vector<Binding> bindings;
 };
@@ -64,28 +59,22 @@ public:
     };
     static Result<Pipeline> graphics(Gpu& gpu, const Graphics& desc);
 
-    Pipeline() = default;
-    Pipeline(Pipeline&& other) noexcept { swap(other); }
-    Pipeline& operator=(Pipeline&& other) noexcept;
-    ~Pipeline();
-
-    VkPipeline handle() const { return pipeline; }
-    VkPipelineLayout layout() const { return pipelineLayout; }
-    explicit operator bool() const { return pipeline != VK_NULL_HANDLE; }
+    VkPipeline handle() const { return pipeline.get(); }
+    VkPipelineLayout layout() const { return pipelineLayout.get(); }
+    explicit operator bool() const { return bool(pipeline); }
 
     void bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets = {}) const;
     template <class T> void push(VkCommandBuffer cmd, const T& values) const
     {
         static_assert(sizeof(T) % 4 == 0 && sizeof(T) <= 128, "push constants are at most 128 bytes everywhere");
-        gpu->vk.CmdPushConstants(cmd, pipelineLayout, stages, 0, sizeof(T), &values);
+        gpu->vk.CmdPushConstants(cmd, pipelineLayout.get(), stages, 0, sizeof(T), &values);
     }
 
 private:
-    void swap(Pipeline& other) noexcept;
     Status makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes);
     Gpu* gpu = nullptr;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
+    Handle<VkPipelineLayout, &VulkanFunctions::DestroyPipelineLayout> pipelineLayout;
+    Handle<VkPipeline, &VulkanFunctions::DestroyPipeline> pipeline;
     VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
     VkShaderStageFlags stages = 0;
 };
@@ -95,16 +84,10 @@ class Sampler
 {
 public:
     static Result<Sampler> create(Gpu& gpu, const VkSamplerCreateInfo& info);
-    Sampler() = default;
-    Sampler(Sampler&& other) noexcept { swap(other); }
-    Sampler& operator=(Sampler&& other) noexcept;
-    ~Sampler();
-    VkSampler handle() const { return sampler; }
+    VkSampler handle() const { return sampler.get(); }
 
 private:
-    void swap(Sampler& other) noexcept { std::swap(gpu, other.gpu), std::swap(sampler, other.sampler); }
-    Gpu* gpu = nullptr;
-    VkSampler sampler = VK_NULL_HANDLE;
+    Handle<VkSampler, &VulkanFunctions::DestroySampler> sampler;
 };
 
 } // namespace sconce

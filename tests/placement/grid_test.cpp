@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "placement/grid.h"
 #include "placement/place.h"
 
 namespace sconce

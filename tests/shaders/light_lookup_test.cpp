@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/bake/patches.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
 #include "tests/support/field_by_rays.h"

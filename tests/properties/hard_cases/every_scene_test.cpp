@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/bake/patches.h"
 #include "runtime/field/field_space.h"
 #include "runtime/field/light_field.h"
 #include "svo/build_octree.h"

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/bake/prefilter.h"
 #include "runtime/field/tracer_cpu.h"
 #include "runtime/frame/environment_brdf.h"
 #include "shaders/shared/brdf.h"
