@@ -21,6 +21,7 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     using TraceResult = typename Base::TraceResult;
     using Base::addTried;
     using Base::answer;
+    using Base::canTrace;
     using Base::directionFromOctahedral;
     using Base::distanceWord;
     using Base::field;
@@ -28,9 +29,12 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     using Base::halfToReal;
     using Base::keepLastTried;
     using Base::kHit;
+    using Base::kLookAheads;
     using Base::kMaxTried;
     using Base::kMiss;
     using Base::kNoProbe;
+    using Base::kProgress;
+    using Base::lookAhead;
     using Base::noneTried;
     using Base::wasTried;
     using TriedProbes = typename Base::TriedProbes;
