@@ -1,5 +1,5 @@
-# What find_package(sconce) gives a host: sconce::runtime, sconce::scene and sconce::svo with their headers, and the GLSL that its own
-# shaders include. All headers live under include/sconce, so that #include "runtime/frame/indirect_light.h" reads the same there as here.
+# What find_package(sconce) gives a host: the target sconce::runtime, the one header <sconce/sconce.h>, and the GLSL that its own shaders include
+# (${SCONCE_SHADERS} for their include path). tests/install/installed_tree.txt lists it file by file.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -7,16 +7,18 @@ set(headers ${CMAKE_INSTALL_INCLUDEDIR}/sconce)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/sconce)
 foreach(name base runtime scene svo shader_headers)
     set_target_properties(sconce_${name} PROPERTIES EXPORT_NAME ${name})
-    target_include_directories(sconce_${name} INTERFACE $<INSTALL_INTERFACE:${headers}> $<INSTALL_INTERFACE:${headers}/shaders>)
+    target_include_directories(sconce_${name} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}> $<INSTALL_INTERFACE:${headers}/shaders>)
 endforeach()
+# base, scene and svo are what runtime links; a host names runtime alone.
 install(TARGETS sconce_base sconce_runtime sconce_scene sconce_svo sconce_shader_headers EXPORT sconce)
 install(EXPORT sconce NAMESPACE sconce:: FILE sconce-targets.cmake DESTINATION ${package})
 
-install(DIRECTORY base runtime svo DESTINATION ${headers} FILES_MATCHING PATTERN "*.h")
-foreach(name builtin_scenes mesh_builder probe_grid scene scene_check) # the glTF import stays with the command
-    install(FILES scene/${name}.h DESTINATION ${headers}/scene)
-endforeach()
-install(DIRECTORY shaders/shared DESTINATION ${headers}/shaders FILES_MATCHING PATTERN "*.h")
+install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DIN=runtime/sconce.h
+    -DOUT=\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${headers}/sconce.h -P ${PROJECT_SOURCE_DIR}/cmake/SconceFlatten.cmake COMMAND_ERROR_IS_FATAL ANY)")
+set(shared_headers brdf chart color face_chain face_march frame gpu_types light_field light_lookup octree_descent prefiltered probe_trace
+    ray_query ray_state texel)
+list(TRANSFORM shared_headers REPLACE "(.+)" "shaders/shared/\\1.h")
+install(FILES ${shared_headers} DESTINATION ${headers}/shaders/shared)
 install(FILES shaders/light_field.glsl DESTINATION ${headers}/shaders)
 
 configure_package_config_file(cmake/sconce-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/sconce-config.cmake INSTALL_DESTINATION ${package}

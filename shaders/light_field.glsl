@@ -1,10 +1,12 @@
 // What a host's own shader includes to ask the light field: queryRay() traces a ray, irradianceAt() reads prefiltered light.
+// SCONCE_GLSL_VERSION rises whenever what a host may have written against it no longer means the same.
 // Define SCONCE_FIELD_SET to the descriptor set that LightField::descriptorSet() is bound to (0 when undefined).
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "shared/light_field.h"
+#define SCONCE_GLSL_VERSION 1
 #ifndef SCONCE_FIELD_SET
 #define SCONCE_FIELD_SET 0
 #endif

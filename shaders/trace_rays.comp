@@ -3,14 +3,15 @@
 #include "light_field.glsl"
 
 // World-space rays in, answers out. Dispatch: ceil(count / 64) groups.
-layout(local_size_x = 64) in;
-layout(scalar, set = 1, binding = 0) readonly buffer Rays { Ray rays[]; };
-layout(scalar, set = 1, binding = 1) writeonly buffer Hits { RayHit hits[]; };
-layout(scalar, push_constant) uniform Push { uint count; };
+layout(local_size_x = kTraceRaysGroup) in;
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Rays { Ray ray[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Hits { RayHit hit[]; };
+layout(scalar, push_constant) uniform Push { TraceRaysPush push; };
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    hits[i] = sconceQuery(rays[i].origin, rays[i].direction, rays[i].normal);
+    if (i >= push.count) return;
+    Ray ray = Rays(push.rays).ray[i];
+    Hits(push.hits).hit[i] = sconceQuery(ray.origin, ray.direction, ray.normal);
 }

@@ -49,10 +49,7 @@ int runBake(const BakeOptions& options, const Context& context)
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
     capScene(*scene, *plan);
-    settings.radiance = plan->needsRadiance() || (frame.effects.tracedDiffuse && plan->on("diffuse"));
-    settings.prefiltered = plan->needsPrefiltered() || !settings.radiance; // a traced ray's colour, when someone asks for one
-    for (const PlannedEffect& effect : plan->effects)
-        if (effect.on) settings.effects.push_back(effect.name);
+    settings.take(*plan, frame.effects.tracedDiffuse);
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
     BakeReport report;

@@ -240,7 +240,7 @@ int runBench(const BenchOptions& options, const Context& context)
 {
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
     if (!device) return fail(device.error());
-    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
+    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
     const Result<std::string> build = keyOfThisBuild();
     if (!build) return fail(build.error());

@@ -175,7 +175,7 @@ int runRender(RenderOptions options, const Context& context)
 
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
     if (!device) return fail(device.error());
-    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
+    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
     settings.width = options.width;
     settings.height = options.height;
@@ -188,7 +188,7 @@ int runRender(RenderOptions options, const Context& context)
     Result<DeviceScene> deviceScene =
         DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects), consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
-    Result<LightField> field = LightField::create(**gpu, *data, tracer);
+    Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,

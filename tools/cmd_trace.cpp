@@ -74,11 +74,11 @@ Status traceOnDevice(const FieldData& field, std::optional<Baseline> baseline, c
 {
     const Result<OwnDevice> device = OwnDevice::create({.device = name});
     if (!device) return device.error();
-    Result<std::unique_ptr<Gpu>> gpu = Gpu::create(device->host());
+    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return gpu.error();
-    Result<LightField> lightField = LightField::create(**gpu, field);
+    Result<LightField> lightField = makeLightField(**gpu, field);
     if (!lightField) return lightField.error();
-    Result<RayTracer> tracer = RayTracer::create(**gpu, *lightField, baseline ? traceRaysPass(*baseline) : Spirv{});
+    Result<RayTracer> tracer = makeRayTracer(**gpu, *lightField, baseline ? traceRaysPass(*baseline) : Spirv{});
     if (!tracer) return tracer.error();
     double milliseconds = 0.0;
     Status status = inPieces(rays.size(), progress,

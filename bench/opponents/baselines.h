@@ -31,7 +31,7 @@ std::optional<Baseline> baselineNamed(std::string_view name);
 float baselineOffset(Baseline baseline);
 
 /// Texels a side that a texel of the low-resolution map covers: the published 16 for b0, for the others what is fastest on maps of 256 to
-/// 1024 texels a side (docs/measurements.md).
+/// 1024 texels a side (bench/results/low_factor.json).
 uint32_t bestLowFactor(Baseline baseline);
 
 /// What an opponent reads, made from a baked field: b0 and b0plus want octahedral maps on a grid (b0: of power-of-two counts),
@@ -40,7 +40,7 @@ uint32_t bestLowFactor(Baseline baseline);
 /// @param lowFactor  8, 16 or 32; 0: bestLowFactor
 Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t lowFactor = 0);
 
-/// Passes with the interfaces of trace_rays.comp and trace_glossy.comp, for RayTracer and IndirectLight.
+/// Passes with the interfaces of trace_rays.comp and trace_glossy.comp, for makeRayTracer() and makeIndirectLight().
 Spirv traceRaysPass(Baseline baseline);
 Spirv traceGlossyPass(Baseline baseline);
 

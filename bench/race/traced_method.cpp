@@ -134,10 +134,10 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData f
         data = narrowedField(std::move(*data), how.distanceBits);
     if (!data) return data.error();
     made->field = std::move(*data);
-    auto onDevice = LightField::create(gpu, made->field, how.quality);
+    auto onDevice = makeLightField(gpu, made->field, how.quality);
     if (!onDevice) return onDevice.error();
     made->onDevice.emplace(std::move(*onDevice));
-    auto tracer = RayTracer::create(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : Spirv());
+    auto tracer = makeRayTracer(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : Spirv());
     if (!tracer) return tracer.error();
     made->tracer.emplace(std::move(*tracer));
     auto timer = GpuTimer::create(gpu, 1);
@@ -246,7 +246,7 @@ Result<double> TracedMethod::time(bool inOrder)
         {
             timer->reset(cmd);
             timer->begin(cmd, "trace");
-            tracer->record(cmd, inOrder ? orderedRays : shuffledRays, hitBuffer, timedRays);
+            recordTrace(*tracer, cmd, inOrder ? orderedRays : shuffledRays, hitBuffer, timedRays);
             timer->end(cmd);
         });
     if (!status) return status.error();

@@ -96,7 +96,7 @@ std::set<std::string> imageFiles(const Json& results)
     return files;
 }
 
-/// The header (docs/results.md) and as many pixels as it says.
+/// The header (docs/formats.md) and as many pixels as it says.
 bool isWholeImage(const std::vector<uint8_t>& bytes)
 {
     struct

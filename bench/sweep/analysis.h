@@ -10,7 +10,7 @@
 namespace sconce
 {
 
-/// What the points of one scene say: "fronts", "equal", "prices", "breaks" of docs/results.md. Points whose picture is wrong beyond use,
+/// What the points of one scene say: "fronts", "equal", "prices", "breaks" of docs/formats.md. Points whose picture is wrong beyond use,
 /// and figures that were not measured, take part in nothing. A loss is worded as a win is.
 Json analyseScene(const std::vector<Json>& points);
 

@@ -8,7 +8,7 @@
 namespace sconce
 {
 
-// What is measured, in the form of results.json (docs/results.md).
+// What is measured, in the form of results.json (docs/formats.md).
 
 Json toJson(vec3 v);
 /// Null where it isn't a number, which JSON has no word for.

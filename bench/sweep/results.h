@@ -8,13 +8,13 @@
 namespace sconce
 {
 
-/// results.json (docs/results.md) without its scenes: version, command, machine, device.
+/// results.json (docs/formats.md) without its scenes: version, command, machine, device.
 Json resultsHead(const std::string& version, const std::string& build, const std::string& command, const std::string& deviceName);
 
 /// Writes results.json and results.csv, each whole or not at all. Errors: fileError.
 Status writeResults(const Json& results, const std::filesystem::path& folder);
 
-/// One line a point, one column a figure of docs/results.md; empty where it wasn't measured.
+/// One line a point, one column a figure of docs/formats.md; empty where it wasn't measured.
 std::string resultsCsv(const Json& results);
 
 /// Reads results.json, or what has its schema. Errors: fileError, badInput (another schema).

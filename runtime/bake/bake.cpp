@@ -210,7 +210,7 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     lit.octree = field.octree;
     lit.irradiance = field.irradiance;
     lit.distance = std::move(field.distance); // tells which probes a wall hides; lent, since it is half of the field
-    auto device = LightField::create(gpu, lit);
+    auto device = makeLightField(gpu, lit);
     field.distance = std::move(lit.distance);
     if (!device) return device.error();
     const std::string stage = "bounce " + std::to_string(number);
@@ -225,6 +225,14 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
 }
 
 } // namespace
+
+void BakeSettings::take(const EffectPlan& plan, bool tracedDiffuse)
+{
+    radiance = plan.needsRadiance() || (tracedDiffuse && plan.on("diffuse"));
+    prefiltered = plan.needsPrefiltered() || !radiance; // a traced ray's colour, when someone asks for one
+    for (const PlannedEffect& effect : plan.effects)
+        if (effect.on) effects.push_back(effect.name);
+}
 
 Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                  const Progress& progress, BakeReport& bakeReport)

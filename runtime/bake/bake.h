@@ -5,6 +5,7 @@
 
 #include "base/progress.h"
 #include "runtime/field/field_data.h"
+#include "runtime/frame/effect_plan.h"
 #include "runtime/scene/device_scene.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/probe_grid.h"
@@ -26,6 +27,9 @@ struct BakeSettings
     OctreeSettings octree;
     std::optional<ProbeGrid> grid; // set when the probes are a uniform one
     uint64_t hostMemory = 0;       // bytes of main memory that it may take; 0: what is free
+
+    /// Keeps what frames by a plan ask for, and the names of the plan's effects. @param tracedDiffuse  diffuse light by rays, too
+    void take(const EffectPlan& plan, bool tracedDiffuse = false);
 };
 
 /// What a bake cost. Seconds are wall-clock.

@@ -85,12 +85,14 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
 
 } // namespace
 
-Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Quality& quality)
+Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality)
 {
     if (field.probes.empty()) return Error{ErrorCode::badArgument, "the light field has no probes; bake one with at least one probe"};
-    LightField made;
-    made.gpu = &gpu;
-    made.fieldInfo = field.info;
+    const auto state = std::make_shared<LightField::State>();
+    LightField::State& made = *state;
+    made.gpu = gpu.shared_from_this();
+    made.info = field.info;
+    made.effects = field.effects;
     struct Part
     {
         Buffer& buffer;
@@ -140,83 +142,160 @@ Result<LightField> LightField::create(Gpu& gpu, const FieldData& field, const Qu
     made.set.write(3, made.patches);
     made.set.write(2, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     if (auto status = made.setQuality(quality); !status) return status.error();
-    return made;
+    return LightField(state);
 }
 
-Status LightField::setQuality(const Quality& quality)
+Status LightField::State::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const FieldBlock values{fieldInfo, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
+    const FieldBlock values{info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
+}
+
+LightField::LightField(std::shared_ptr<State> made) : shared(std::move(made)) {}
+
+VkDescriptorSetLayout LightField::layout() const
+{
+    return shared->set.layout();
+}
+
+VkDescriptorSet LightField::descriptorSet() const
+{
+    return shared->set.handle();
 }
 
 std::array<uint32_t, 2> LightField::constants() const
 {
-    return {(readsFarBounds ? 1u : 0u) | (fieldInfo.chart == gpu::kChartOctahedral ? 2u : 0u), radianceHeld ? 1u : 0u};
+    return {(shared->readsFarBounds ? 1u : 0u) | (shared->info.chart == gpu::kChartOctahedral ? 2u : 0u), shared->radianceHeld ? 1u : 0u};
 }
 
-Result<RayTracer> RayTracer::create(Gpu& gpu, const LightField& field, Spirv shader)
+const gpu::LightFieldInfo& LightField::info() const
 {
-    RayTracer made;
-    made.gpu = &gpu;
-    made.field = &field;
-    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-    auto set = DescriptorSet::create(gpu, bindings);
-    if (!set) return set.error();
-    made.set = std::move(*set);
-    const VkDescriptorSetLayout layouts[] = {field.layout(), made.set.layout()};
+    return shared->info;
+}
+
+uint64_t LightField::deviceBytes() const
+{
+    return shared->bytes;
+}
+
+bool LightField::holdsRadiance() const
+{
+    return shared->radianceHeld;
+}
+
+bool LightField::holdsPrefiltered() const
+{
+    return shared->prefiltered.size() > 0;
+}
+
+bool LightField::holdsPatches() const
+{
+    return shared->patchesHeld;
+}
+
+const std::vector<std::string>& LightField::effects() const
+{
+    return shared->effects;
+}
+
+IndirectEffects LightField::effectsOfFrames() const
+{
+    const auto called = [&](const char* name) { return std::ranges::find(shared->effects, name) != shared->effects.end(); };
+    IndirectEffects effects;
+    effects.diffuse = called("diffuse");
+    effects.rough = called("rough") && holdsPrefiltered();
+    effects.glossy = called("glossy");
+    effects.mirror = called("mirror");
+    effects.denoise = effects.glossy;
+    return effects;
+}
+
+Status LightField::setQuality(const Quality& quality)
+{
+    return shared->setQuality(quality);
+}
+
+RayTracer::RayTracer(std::shared_ptr<State> made) : shared(std::move(made)) {}
+
+Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, Spirv shader)
+{
+    const VkDescriptorSetLayout layouts[] = {field.layout()};
     const auto constants = field.constants();
-    auto pipeline = Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(uint32_t), constants);
+    auto pipeline =
+        Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(gpu::TraceRaysPush), constants);
     if (!pipeline) return pipeline.error();
-    made.pipeline = std::move(*pipeline);
-    return made;
+    return RayTracer(std::make_shared<RayTracer::State>(RayTracer::State{gpu.shared_from_this(), field, std::move(*pipeline)}));
 }
 
-void RayTracer::record(VkCommandBuffer cmd, const Buffer& rays, const Buffer& hits, uint32_t count)
+namespace
 {
-    set.write(0, rays);
-    set.write(1, hits);
-    const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
-    pipeline.bind(cmd, sets);
-    pipeline.push(cmd, count);
-    gpu->vk.CmdDispatch(cmd, (count + 63) / 64, 1, 1);
-    static_assert(sizeof(gpu::RayHit) == 64);
-    constexpr uint32_t words = sizeof(gpu::RayHit) / 4, floats = 0x87feu; // t, position, normal, radiance, confidence
-    scanBuffer(*gpu, cmd, "trace rays", hits, {.count = VkDeviceSize(count) * words, .stride = words, .mask = floats});
-    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+
+/// Rays and hits are named by address, not by descriptor: records of one tracer don't disturb each other.
+void recordPass(const RayTracer::State& tracer, VkCommandBuffer cmd, VkDeviceAddress rays, VkDeviceAddress hits, uint32_t count)
+{
+    const VkDescriptorSet sets[] = {tracer.field.descriptorSet()};
+    tracer.pipeline.bind(cmd, sets);
+    tracer.pipeline.push(cmd, gpu::TraceRaysPush{rays, hits, count});
+    tracer.gpu->vk.CmdDispatch(cmd, (count + gpu::kTraceRaysGroup - 1) / gpu::kTraceRaysGroup, 1, 1);
+}
+
+/// Whatever reads the hits next: the host's stages are not known here.
+void barrierAfterTrace(const Gpu& gpu, VkCommandBuffer cmd)
+{
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
 }
 
-Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds)
+} // namespace
+
+void RayTracer::record(VkCommandBuffer cmd, VkDeviceAddress rays, VkDeviceAddress hits, uint32_t count) const noexcept
+{
+    recordPass(*shared, cmd, rays, hits, count);
+    barrierAfterTrace(*shared->gpu, cmd);
+}
+
+void recordTrace(const RayTracer& tracer, VkCommandBuffer cmd, const Buffer& rays, const Buffer& hits, uint32_t count)
+{
+    Gpu& gpu = *tracer.state().gpu;
+    recordPass(tracer.state(), cmd, rays.address(), hits.address(), count);
+    static_assert(sizeof(gpu::RayHit) == 64);
+    constexpr uint32_t words = sizeof(gpu::RayHit) / 4, floats = 0x87feu; // t, position, normal, radiance, confidence
+    scanBuffer(gpu, cmd, "trace rays", hits, {.count = VkDeviceSize(count) * words, .stride = words, .mask = floats});
+    barrierAfterTrace(gpu, cmd);
+}
+
+Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds) const
 {
     assert(rays.size() == hits.size());
     constexpr size_t kPiece = size_t(1) << 18;
     const size_t piece = std::min(rays.size(), kPiece);
     if (milliseconds) *milliseconds = 0.0;
     if (piece == 0) return success();
-    auto rayBuffer = gpu->makeBuffer(piece * sizeof(gpu::Ray), 0, MemoryUse::device, "rays");
+    Gpu& gpu = *shared->gpu;
+    auto rayBuffer = gpu.makeBuffer(piece * sizeof(gpu::Ray), 0, MemoryUse::device, "rays");
     if (!rayBuffer) return rayBuffer.error();
-    auto hitBuffer = gpu->makeBuffer(piece * sizeof(gpu::RayHit), 0, MemoryUse::device, "ray hits");
+    auto hitBuffer = gpu.makeBuffer(piece * sizeof(gpu::RayHit), 0, MemoryUse::device, "ray hits");
     if (!hitBuffer) return hitBuffer.error();
-    auto timer = GpuTimer::create(*gpu, 1);
+    auto timer = GpuTimer::create(gpu, 1);
     if (!timer) return timer.error();
     for (size_t first = 0; first < rays.size(); first += piece)
     {
         const size_t count = std::min(piece, rays.size() - first);
-        if (auto status = gpu->upload(*rayBuffer, 0, std::as_bytes(rays.subspan(first, count))); !status) return status;
-        auto status = gpu->submit(
+        if (auto status = gpu.upload(*rayBuffer, 0, std::as_bytes(rays.subspan(first, count))); !status) return status;
+        auto status = gpu.submit(
             [&](VkCommandBuffer cmd)
             {
                 timer->reset(cmd);
                 timer->begin(cmd, "trace");
-                record(cmd, *rayBuffer, *hitBuffer, uint32_t(count));
+                recordTrace(*this, cmd, *rayBuffer, *hitBuffer, uint32_t(count));
                 timer->end(cmd);
             });
         if (!status) return status;
         if (milliseconds)
             for (const GpuTimer::Scope& scope : timer->read()) *milliseconds += scope.milliseconds;
-        if (auto copied = gpu->download(*hitBuffer, 0, std::as_writable_bytes(hits.subspan(first, count))); !copied) return copied;
+        if (auto copied = gpu.download(*hitBuffer, 0, std::as_writable_bytes(hits.subspan(first, count))); !copied) return copied;
     }
     return success();
 }

@@ -24,7 +24,7 @@ struct Quality
     };
 };
 
-/// A named choice of every knob but the number of probes, with what it was measured to cost (docs/bench.md). A host bakes with the first
+/// A named choice of every knob but the number of probes, with what it was measured to cost (docs/accuracy.md). A host bakes with the first
 /// two (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
 struct QualityLevel
 {
@@ -39,7 +39,7 @@ struct QualityLevel
     float raysBelow;    // roughness below which reflections are traced
     bool tracedDiffuse; // diffuse light by rays
     float time, memory,
-        error; // of a frame, of the light field, of the picture (FLIP), times those of `medium`; of docs/bench.md's table
+        error; // of a frame, of the light field, of the picture (FLIP), times those of `medium`; of docs/accuracy.md's table
 };
 
 /// From the cheapest to the best.

@@ -36,7 +36,7 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
 
 } // namespace
 
-Status IndirectLight::makeImage(GpuImage& target, VkFormat format, const char* what)
+Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const char* what)
 {
     auto made = makeLightImage(*gpu, format, desc.width, desc.height, what);
     if (!made) return made.error();
@@ -46,8 +46,8 @@ Status IndirectLight::makeImage(GpuImage& target, VkFormat format, const char* w
 
 /// @param images     of bindings 4 and 5
 /// @param constants  after the field's and whether the pass runs on tiles
-Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
-                               std::initializer_list<uint32_t> constants)
+Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
+                                      std::initializer_list<uint32_t> constants)
 {
     const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
@@ -60,18 +60,18 @@ Status IndirectLight::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
     for (const GpuImage* image : images) set.write(binding++, image->view(), VK_IMAGE_LAYOUT_GENERAL);
     set.write(kTableBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
     set.write(kTileBinding, tileList->buffer());
-    const auto fieldConstants = field->constants();
+    const auto fieldConstants = field.constants();
     std::vector<uint32_t> values(fieldConstants.begin(), fieldConstants.end());
     values.push_back(tileList->constant());
     values.insert(values.end(), constants);
-    const VkDescriptorSetLayout layouts[] = {field->layout(), set.layout()};
+    const VkDescriptorSetLayout layouts[] = {field.layout(), set.layout()};
     auto built = Pipeline::compute(*gpu, shader, layouts, 0, values);
     if (!built) return built.error();
     pipeline = std::move(*built);
     return success();
 }
 
-Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
+Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
     if (auto s = makeImage(image, kLightFormat,
                            term == gpu::kTermMirror    ? "mirrored light"
@@ -88,18 +88,18 @@ Status IndirectLight::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeli
     }
     if (counts && !countImage)
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
-    const Spirv shader = desc.glossyShader.empty() ? Spirv(trace_glossy_comp) : desc.glossyShader;
+    const Spirv shader = glossyShader.empty() ? Spirv(trace_glossy_comp) : glossyShader;
     return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts},
                     {term, counts ? 1u : 0u, term == gpu::kTermMirror ? 0u : everyLog()});
 }
 
-Status IndirectLight::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
+Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
     if (desc.traceEvery == 1) return success();
     return makePass(pipeline, set, reconstruct_comp, {&image, &image}, {term, 0u, everyLog()});
 }
 
-Status IndirectLight::makeGather()
+Status IndirectLight::State::makeGather()
 {
     const IndirectEffects& effects = desc.effects;
     if (gathersDiffuse())
@@ -118,45 +118,53 @@ Status IndirectLight::makeGather()
                     {gathersDiffuse() ? 1u : 0u, effects.rough ? 1u : 0u, gatherList(), effects.patches ? 1u : 0u});
 }
 
-Result<IndirectLight> IndirectLight::create(Gpu& gpu, const LightField& field, const Desc& desc)
+IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, Spirv shader)
+    : gpu(device.shared_from_this()), field(asked), desc(wanted), glossyShader(shader)
 {
-    if (const std::string problem = problemOf(gpu, field, desc); !problem.empty()) return Error{ErrorCode::badArgument, problem};
-    IndirectLight made;
-    made.gpu = &gpu;
-    made.field = &field;
-    made.desc = desc;
-    auto frame = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
-    if (!frame) return frame.error();
-    made.frame = std::move(*frame);
+}
+
+Status IndirectLight::State::make()
+{
+    if (const std::string problem = problemOf(*gpu, field, desc); !problem.empty()) return Error{ErrorCode::badArgument, problem};
+    auto block = gpu->makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
+    if (!block) return block.error();
+    frame = std::move(*block);
     const IndirectEffects& effects = desc.effects;
     if (effects.diffuse || effects.rough || effects.glossy || effects.mirror)
     {
-        auto tiles = TileList::create(gpu, made.frame, {desc.width, desc.height, made.everyLog(), effects.tiles});
+        auto tiles = TileList::create(*gpu, frame, {desc.width, desc.height, everyLog(), effects.tiles});
         if (!tiles) return tiles.error();
-        made.tileList = std::make_unique<TileList>(std::move(*tiles));
+        tileList = std::make_unique<TileList>(std::move(*tiles));
     }
-    if (made.gathersDiffuse() || effects.rough)
-        if (auto s = made.makeGather(); !s) return s.error();
+    if (gathersDiffuse() || effects.rough)
+        if (auto s = makeGather(); !s) return s;
     if (effects.diffuse && effects.tracedDiffuse)
     {
-        if (auto s = made.makeTrace(gpu::kTermDiffuse, made.diffuseImage, made.diffusePass, made.diffuseSet); !s) return s.error();
-        if (auto s = made.makeFill(gpu::kTermDiffuse, made.diffuseImage, made.diffuseFill, made.diffuseFillSet); !s) return s.error();
+        if (auto s = makeTrace(gpu::kTermDiffuse, diffuseImage, diffusePass, diffuseSet); !s) return s;
+        if (auto s = makeFill(gpu::kTermDiffuse, diffuseImage, diffuseFill, diffuseFillSet); !s) return s;
     }
     if (effects.mirror)
-        if (auto s = made.makeTrace(gpu::kTermMirror, made.mirrorImage, made.mirrorPass, made.mirrorSet); !s) return s.error();
-    if (!effects.glossy) return made;
-    if (auto s = made.makeTrace(gpu::kTermGlossy, made.glossyImage, made.glossyPass, made.glossySet); !s) return s.error();
-    if (auto s = made.makeFill(gpu::kTermGlossy, made.glossyImage, made.glossyFill, made.glossyFillSet); !s) return s.error();
-    if (!effects.denoise) return made;
-    if (auto s = made.makeImage(made.scratch, kLightFormat, "scratch of the glossy filter"); !s) return s.error();
-    auto denoiser = Denoiser::create(gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, made.tiles(), desc.width, desc.height},
-                                     made.frame, made.glossyImage, made.scratch);
-    if (!denoiser) return denoiser.error();
-    made.denoiser = std::move(*denoiser);
-    return made;
+        if (auto s = makeTrace(gpu::kTermMirror, mirrorImage, mirrorPass, mirrorSet); !s) return s;
+    if (!effects.glossy) return success();
+    if (auto s = makeTrace(gpu::kTermGlossy, glossyImage, glossyPass, glossySet); !s) return s;
+    if (auto s = makeFill(gpu::kTermGlossy, glossyImage, glossyFill, glossyFillSet); !s) return s;
+    if (!effects.denoise) return success();
+    if (auto s = makeImage(scratch, kLightFormat, "scratch of the glossy filter"); !s) return s;
+    auto made = Denoiser::create(*gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, tileList.get(), desc.width, desc.height},
+                                 frame, glossyImage, scratch);
+    if (!made) return made.error();
+    denoiser = std::move(*made);
+    return success();
 }
 
-void IndirectLight::setInputs(const FrameInputs& inputs)
+Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, Spirv glossyShader)
+{
+    auto state = std::make_unique<IndirectLight::State>(gpu, field, desc, glossyShader);
+    if (Status status = state->make(); !status) return status.error();
+    return IndirectLight(std::move(state));
+}
+
+void IndirectLight::State::setInputs(const FrameInputs& inputs)
 {
     for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet},
                                     {&mirrorPass, &mirrorSet},
@@ -169,7 +177,7 @@ void IndirectLight::setInputs(const FrameInputs& inputs)
     if (denoiser) denoiser.setInputs(inputs);
 }
 
-void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
+void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
 {
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
@@ -195,7 +203,7 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
         timed(name,
               [&]
               {
-                  const VkDescriptorSet sets[] = {field->descriptorSet(), set.handle()};
+                  const VkDescriptorSet sets[] = {field.descriptorSet(), set.handle()};
                   pipeline.bind(cmd, sets);
                   tileList->dispatch(cmd, list, tilesLog);
               });
@@ -225,19 +233,74 @@ void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuT
         pass(glossyFill, glossyFillSet, gpu::kTermGlossy, "glossy fill");
         scan("glossy fill", {&glossyImage});
     }
-    if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field->descriptorSet()); });
+    if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }
 
-uint64_t IndirectLight::deviceBytes() const
+uint64_t IndirectLight::State::deviceBytes() const
 {
     const uint64_t pixels = uint64_t(desc.width) * desc.height;
     uint64_t bytes = frame.size() + brdfTable.size() + (tileList ? tileList->buffer().size() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += 16 * pixels;
     return bytes + denoiser.deviceBytes();
+}
+
+namespace
+{
+
+IndirectLight::Output outputOf(const GpuImage& image)
+{
+    return image ? IndirectLight::Output{image.handle(), image.view(), image.desc().format} : IndirectLight::Output{};
+}
+
+} // namespace
+
+IndirectLight::IndirectLight(std::unique_ptr<State> made) : owned(std::move(made)) {}
+IndirectLight::IndirectLight(IndirectLight&&) noexcept = default;
+IndirectLight& IndirectLight::operator=(IndirectLight&&) noexcept = default;
+IndirectLight::~IndirectLight() = default;
+
+void IndirectLight::setInputs(const FrameInputs& inputs)
+{
+    owned->setInputs(inputs);
+}
+
+void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
+{
+    owned->record(cmd, view, timer);
+}
+
+IndirectLight::Output IndirectLight::diffuse() const
+{
+    return outputOf(owned->diffuseImage);
+}
+
+IndirectLight::Output IndirectLight::rough() const
+{
+    return outputOf(owned->roughImage);
+}
+
+IndirectLight::Output IndirectLight::glossy() const
+{
+    return outputOf(owned->glossyImage);
+}
+
+IndirectLight::Output IndirectLight::mirror() const
+{
+    return outputOf(owned->mirrorImage);
+}
+
+IndirectLight::Output IndirectLight::counts() const
+{
+    return outputOf(owned->countImage);
+}
+
+uint64_t IndirectLight::deviceBytes() const
+{
+    return owned->deviceBytes();
 }
 
 } // namespace sconce

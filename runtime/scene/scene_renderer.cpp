@@ -101,8 +101,8 @@ Status SceneRenderer::make()
 {
     const IndirectEffects& effects = settings.effects;
     const bool rays = effects.glossy || effects.mirror;
-    auto light = IndirectLight::create(
-        gpu, field, {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays, settings.glossyShader});
+    auto light = makeIndirectLight(gpu, field, {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays},
+                                   settings.glossyShader);
     if (!light) return light.error();
     indirect.emplace(std::move(*light));
 
@@ -193,18 +193,18 @@ Status SceneRenderer::makeDiffuse()
             const auto ofField = field.constants();
             constants.assign(ofField.begin(), ofField.end());
         }
-        constants.push_back(indirect->tiles()->constant());
+        constants.push_back(indirect->state().tileList->constant());
         if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings, sizeof(AreaPush),
                               scene.layout(), constants, traced ? field.layout() : VK_NULL_HANDLE);
             !s)
             return s;
         areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        areaSet.write(5, indirect->diffuse().view(), VK_IMAGE_LAYOUT_GENERAL);
-        areaSet.write(kTileBinding, indirect->tiles()->buffer());
+        areaSet.write(5, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
+        areaSet.write(kTileBinding, indirect->state().tileList->buffer());
     }
-    const Denoiser::Desc desc{scene.layout(),    gpu::kTermDiffuse, false,          settings.effects.temporal,
-                              indirect->tiles(), settings.width,    settings.height};
-    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->diffuse(), scratch);
+    const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
+                              settings.width, settings.height};
+    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, scratch);
     if (!made) return made.error();
     denoiser = std::move(*made);
     denoiser.setInputs(gBuffer);
@@ -221,10 +221,10 @@ Status SceneRenderer::makeCompose()
     };
     // What is not made is not read: anything may be bound in its place.
     const Shown images[] = {{direct, true},
-                            {indirect->diffuse(), effects.diffuse},
-                            {indirect->rough(), effects.rough},
-                            {indirect->glossy(), effects.glossy},
-                            {indirect->mirror(), effects.mirror},
+                            {indirect->state().diffuseImage, effects.diffuse},
+                            {indirect->state().roughImage, effects.rough},
+                            {indirect->state().glossyImage, effects.glossy},
+                            {indirect->state().mirrorImage, effects.mirror},
                             {beauty, true},
                             {diffuseLayer, bool(diffuseLayer)},
                             {glossyLayer, bool(glossyLayer)}};
@@ -370,16 +370,16 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     {
         begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
         areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
-        indirect->tiles()->dispatch(cmd, gpu::kTermDiffuse);
+        indirect->state().tileList->dispatch(cmd, gpu::kTermDiffuse);
         if (timer) timer->end(cmd);
-        scanImage(gpu, cmd, "area light", indirect->diffuse());
+        scanImage(gpu, cmd, "area light", indirect->state().diffuseImage);
     }
     if (denoiser)
     {
         if (timer) timer->begin(cmd, "diffuse denoise");
         denoiser.record(cmd, scene.descriptorSet());
         if (timer) timer->end(cmd);
-        scanImage(gpu, cmd, "diffuse denoise", indirect->diffuse());
+        scanImage(gpu, cmd, "diffuse denoise", indirect->state().diffuseImage);
         scanImage(gpu, cmd, "diffuse denoise", scratch);
     }
     begin(composePass, composeSet, "compose");
@@ -477,9 +477,9 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index
     for (const auto& [layer, target] : {std::pair{&diffuseLayer, &frame.diffuseIndirect}, {&glossyLayer, &frame.glossyIndirect}})
         if (*layer)
             if (auto s = colors(*target, *layer, general); !s) return s.error();
-    if (indirect->counts())
+    if (indirect->state().countImage)
     {
-        auto counts = readBack(indirect->counts(), general);
+        auto counts = readBack(indirect->state().countImage, general);
         if (!counts) return counts.error();
         std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));
     }

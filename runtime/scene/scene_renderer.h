@@ -21,7 +21,7 @@ struct RenderSettings
     std::optional<float> roughness;    // [0,1]: every surface has this roughness (the benchmark of both papers)
     uint32_t areaSamples = 8;          // samples of the emitters, and as many of the sky, a pixel, 1..1024; noise falls with the root
     uint32_t seed = 1;
-    Spirv glossyShader;         // as in IndirectLight::Desc
+    Spirv glossyShader;         // as makeIndirectLight() takes it
     float normalOffset = 1e-4f; // share of the scene's diagonal that rays start off their surface
 };
 

@@ -89,11 +89,11 @@ Error Gpu::failure(const char* call, VkResult result) const
             (memoryLost ? "; free memory or lower the resolution" : "; check the driver, and run with SCONCE_VALIDATION=1 for the cause")};
 }
 
-Result<std::unique_ptr<Gpu>> Gpu::create(const HostVulkan& host)
+Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
 {
     if (!host.instance || !host.physicalDevice || !host.device || !host.queue || !host.getInstanceProcAddr)
         return Error{ErrorCode::badArgument, "HostVulkan lacks an instance, a device, a queue or vkGetInstanceProcAddr; fill all of them"};
-    std::unique_ptr<Gpu> gpu(new Gpu(host));
+    std::shared_ptr<Gpu> gpu(new Gpu(host));
     const auto getDeviceProc = reinterpret_cast<PFN_vkGetDeviceProcAddr>(host.getInstanceProcAddr(host.instance, "vkGetDeviceProcAddr"));
     const char* absent = nullptr;
 #define SCONCE_LOAD(name)                                                                                                                  \
@@ -374,8 +374,8 @@ Result<GpuTimer> GpuTimer::create(Gpu& gpu, uint32_t maxScopes)
 }
 
 GpuTimer::GpuTimer(GpuTimer&& other) noexcept
-    : gpu(std::exchange(other.gpu, nullptr)), queries(std::exchange(other.queries, VK_NULL_HANDLE)), names(std::move(other.names)),
-      used(std::exchange(other.used, 0))
+    : gpu(std::exchange(other.gpu, nullptr)), keptAlive(std::move(other.keptAlive)), queries(std::exchange(other.queries, VK_NULL_HANDLE)),
+      names(std::move(other.names)), used(std::exchange(other.used, 0))
 {
 }
 

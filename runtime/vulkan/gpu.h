@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/vulkan/gpu_memory.h"
+#include "runtime/vulkan/gpu_timer.h"
 
 namespace sconce
 {
@@ -85,10 +86,10 @@ private:
 };
 
 /// A host's device with its functions, the memory seam and one-shot submits. Everything made from it must go before it.
-class Gpu
+class Gpu : public std::enable_shared_from_this<Gpu>
 {
 public:
-    static Result<std::unique_ptr<Gpu>> create(const HostVulkan& host);
+    static Result<std::shared_ptr<Gpu>> create(const HostVulkan& host);
     ~Gpu();
     Gpu(const Gpu&) = delete;
     Gpu& operator=(const Gpu&) = delete;
@@ -156,34 +157,5 @@ struct ImageTransition
     VkAccessFlags2 written = 0, used = 0;
 };
 void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, const ImageTransition& change);
-
-/// Milliseconds on the GPU of named stretches of a command buffer. Names must be literals. Recording never allocates.
-class GpuTimer
-{
-public:
-    static Result<GpuTimer> create(Gpu& gpu, uint32_t maxScopes);
-    GpuTimer(GpuTimer&& other) noexcept;
-    GpuTimer& operator=(GpuTimer&&) = delete;
-    ~GpuTimer();
-
-    void reset(VkCommandBuffer cmd); // first in a command buffer, outside rendering
-    void begin(VkCommandBuffer cmd, const char* name);
-    void end(VkCommandBuffer cmd);
-
-    struct Scope
-    {
-        const char* name;
-        double milliseconds;
-    };
-    /// After the command buffer has finished; empty when the queue has no timestamps.
-    std::vector<Scope> read() const;
-
-private:
-    GpuTimer() = default;
-    Gpu* gpu = nullptr;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    std::vector<const char*> names; // sized once
-    uint32_t used = 0;
-};
 
 } // namespace sconce

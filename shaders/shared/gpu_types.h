@@ -27,12 +27,14 @@ using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
+using DeviceAddress = std::uint64_t; // VkDeviceAddress
 } // namespace sconce::gpu
 #define SCONCE_STRUCTS_BEGIN namespace sconce::gpu {
 #define SCONCE_STRUCTS_END }
 #else
 #extension GL_EXT_scalar_block_layout : require
 #define real float
+#define DeviceAddress uvec2 // a buffer reference is made of one
 #define vec2f vec2
 #define vec3f vec3
 #define SCONCE_FN

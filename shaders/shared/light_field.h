@@ -107,5 +107,17 @@ struct RayHit
 };
 SCONCE_CHECK_SIZE(RayHit, 64);
 
+/// Push constants of trace_rays.comp.
+struct TraceRaysPush
+{
+    DeviceAddress rays; // of Ray[count]
+    DeviceAddress hits; // of RayHit[count]
+    uint count;
+    uint unused;
+};
+SCONCE_CHECK_SIZE(TraceRaysPush, 24);
+
+const uint kTraceRaysGroup = 64u; // rays a workgroup
+
 SCONCE_STRUCTS_END
 #endif

@@ -40,7 +40,7 @@ public:
 
 private:
     std::unique_ptr<OwnDevice> own;
-    std::unique_ptr<Gpu> lent;
+    std::shared_ptr<Gpu> lent;
 };
 
 /// The fixture of tests that share nothing but the way to a device.

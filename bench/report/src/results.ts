@@ -1,4 +1,4 @@
-// results.json, schema 2 (docs/results.md), as it is read here. Anything may be missing: what was not measured is null or left out.
+// results.json, schema 2 (docs/formats.md), as it is read here. Anything may be missing: what was not measured is null or left out.
 
 export interface Spread {
     median: number;

@@ -148,9 +148,9 @@ TEST_P(BaselineOnGpu, AgreesWithTheCpuRayByRay)
     const auto field = fields().of(GetParam());
     ASSERT_TRUE(field) << field.error().message;
     const std::vector<gpu::Ray> rays = raysOf(cornellRays(20000), GetParam());
-    auto device = LightField::create(gpu(), *field);
+    auto device = makeLightField(gpu(), *field);
     ASSERT_TRUE(device) << device.error().message;
-    auto tracer = RayTracer::create(gpu(), *device, traceRaysPass(GetParam()));
+    auto tracer = makeRayTracer(gpu(), *device, traceRaysPass(GetParam()));
     ASSERT_TRUE(tracer) << tracer.error().message;
     std::vector<gpu::RayHit> hits(rays.size()), cpu(rays.size());
     ASSERT_TRUE(tracer->trace(rays, hits));
@@ -171,8 +171,8 @@ TEST_P(BaselineOnGpu, OddRaysEndFinite)
 {
     const auto field = fields().of(GetParam());
     ASSERT_TRUE(field) << field.error().message;
-    auto device = LightField::create(gpu(), *field);
-    auto tracer = RayTracer::create(gpu(), *device, traceRaysPass(GetParam()));
+    auto device = makeLightField(gpu(), *field);
+    auto tracer = makeRayTracer(gpu(), *device, traceRaysPass(GetParam()));
     std::vector<gpu::Ray> rays;
     for (float a : {0.0f, -0.0f, 1.0f, std::nanf(""), INFINITY, -INFINITY, 1e-40f, 1e30f})
         for (float b : {0.0f, 1.0f, std::nanf(""), INFINITY}) rays.push_back({vec3(a, b, 0.5f), vec3(b, a, 0.0f), vec3(0.0f)});

@@ -7,7 +7,7 @@
 namespace sconce::testing_support
 {
 
-/// Results that nobody measured, of the shape that the bench writes (docs/results.md), to try the page on.
+/// Results that nobody measured, of the shape that the bench writes (docs/formats.md), to try the page on.
 struct MadeUp
 {
     int scenes = 2;

@@ -1,15 +1,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "light_field.glsl"
+#if SCONCE_GLSL_VERSION != 1
+#error "written for version 1 of light_field.glsl"
+#endif
 
-// A host's own pass, with the installed GLSL and the interface that RayTracer binds.
+// A host's own pass, with the installed GLSL: rays in, answers out, by address.
 layout(local_size_x = 64) in;
-layout(scalar, set = 1, binding = 0) readonly buffer Rays { Ray rays[]; };
-layout(scalar, set = 1, binding = 1) writeonly buffer Hits { RayHit hits[]; };
-layout(scalar, push_constant) uniform Push { uint count; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Rays { Ray ray[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Hits { RayHit hit[]; };
+layout(scalar, push_constant) uniform Push { TraceRaysPush push; };
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i < count) hits[i] = queryRay(rays[i].origin, rays[i].direction, rays[i].normal);
+    if (i >= push.count) return;
+    Ray ray = Rays(push.rays).ray[i];
+    Hits(push.hits).hit[i] = queryRay(ray.origin, ray.direction, ray.normal);
 }

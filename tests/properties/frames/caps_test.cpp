@@ -73,7 +73,7 @@ protected:
         settings.effects = plan.indirect();
         settings.effects.rough = false;
         auto device = DeviceScene::create(gpu(), scene, made.field.info, bake.scene);
-        auto light = LightField::create(gpu(), made.field);
+        auto light = makeLightField(gpu(), made.field);
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         EXPECT_TRUE(renderer);
         made.frame = std::move(*(*renderer)->render(scene.cameras.front()));

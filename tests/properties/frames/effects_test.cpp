@@ -32,7 +32,7 @@ protected:
         settings.effects = planEffects(checkScene(scene), wanted)->indirect();
         settings.effects.tracedDiffuse = traced;
         auto device = DeviceScene::create(gpu(), scene, field.info);
-        auto light = LightField::create(gpu(), field);
+        auto light = makeLightField(gpu(), field);
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         EXPECT_TRUE(renderer);
         auto frame = (*renderer)->render(scene.cameras.front());
@@ -127,7 +127,7 @@ TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
     ASSERT_TRUE(field) << field.error().message;
     RenderSettings settings = settingsOf(32);
     settings.effects.diffuse = false;
-    const auto light = LightField::create(gpu(), *field);
+    const auto light = makeLightField(gpu(), *field);
     std::vector<vec3> pictures[2];
     uint64_t bytes[2] = {};
     for (int bare = 0; bare < 2; ++bare)
@@ -157,7 +157,7 @@ TEST_F(EffectsTest, ShadowRaysThroughTheFieldNeedNoMapsAndGiveTheSameLight)
     const Scene scene = *makeBuiltinScene("cornell-glossy");
     const auto field = bakeField(scene, kProbes, 128, 0);
     ASSERT_TRUE(field) << field.error().message;
-    const auto light = LightField::create(gpu(), *field);
+    const auto light = makeLightField(gpu(), *field);
     RenderSettings settings = settingsOf(64);
     settings.areaSamples = 64;
     double means[2] = {};

@@ -32,7 +32,7 @@ protected:
     {
         auto device = DeviceScene::create(gpu(), drawn, field.info);
         if (!device) return device.error();
-        auto light = LightField::create(gpu(), field);
+        auto light = makeLightField(gpu(), field);
         if (!light) return light.error();
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         if (!renderer) return renderer.error();

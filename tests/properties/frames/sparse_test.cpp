@@ -54,7 +54,7 @@ protected:
             field = std::move(*baked);
         }
         auto device = DeviceScene::create(gpu(), scene, field->info);
-        auto light = LightField::create(gpu(), *field);
+        auto light = makeLightField(gpu(), *field);
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         if (!renderer) return renderer.error();
         std::vector<RenderedFrame> drawn;

@@ -25,7 +25,7 @@ protected:
         auto baked = bakeField(scene, probes);
         ASSERT_TRUE(baked) << baked.error().message;
         device.emplace(std::move(*DeviceScene::create(gpu(), scene, baked->info)));
-        field.emplace(std::move(*LightField::create(gpu(), *baked)));
+        field.emplace(std::move(*makeLightField(gpu(), *baked)));
     }
     void TearDown() override
     {

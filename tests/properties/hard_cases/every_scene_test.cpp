@@ -201,9 +201,9 @@ TEST_P(EveryScene, DeviceAnswersLikeFloat)
 {
     FieldData& field = made->field;
     field.irradiance.assign(size_t(field.info.probeCount) * kIrradianceWordsPerProbe, 0);
-    auto device = LightField::create(gpu(), field);
+    auto device = makeLightField(gpu(), field);
     ASSERT_TRUE(device) << device.error().message;
-    auto tracer = RayTracer::create(gpu(), *device);
+    auto tracer = makeRayTracer(gpu(), *device);
     ASSERT_TRUE(tracer) << tracer.error().message;
     std::vector<gpu::Ray> rays(kRays);
     for (uint32_t i = 0; i < kRays; ++i)

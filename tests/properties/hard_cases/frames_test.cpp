@@ -79,7 +79,7 @@ protected:
     {
         auto device = DeviceScene::create(gpu(), scene, field.info, fewSamples());
         if (!device) return device.error();
-        auto light = LightField::create(gpu(), field);
+        auto light = makeLightField(gpu(), field);
         if (!light) return light.error();
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         if (!renderer) return renderer.error();
@@ -304,7 +304,7 @@ TEST_F(HardFrames, CamerasWhereNobodyStands)
 TEST_F(HardFrames, CamerasThatAreNoneAreRefusedWithASentence)
 {
     const auto device = DeviceScene::create(gpu(), cornell(), cornellField().info, fewSamples());
-    const auto light = LightField::create(gpu(), cornellField());
+    const auto light = makeLightField(gpu(), cornellField());
     ASSERT_TRUE(device && light);
     const auto renderer = SceneRenderer::create(gpu(), *device, *light, settingsOf(16));
     ASSERT_TRUE(renderer);
@@ -334,7 +334,7 @@ TEST_F(HardFrames, CamerasThatAreNoneAreRefusedWithASentence)
 TEST_F(HardFrames, AnotherSizeFromFrameToFrame)
 {
     const auto device = DeviceScene::create(gpu(), cornell(), cornellField().info, fewSamples());
-    const auto light = LightField::create(gpu(), cornellField());
+    const auto light = makeLightField(gpu(), cornellField());
     ASSERT_TRUE(device && light);
     const std::pair<uint32_t, uint32_t> sizes[] = {{64, 36}, {1, 1}, {127, 3}, {9, 65}, {64, 36}};
     std::optional<RenderedFrame> first;

@@ -9,7 +9,7 @@
 namespace sconce::testing_support
 {
 
-/// One row of the table in docs/hard_cases.md: prints it and fails the test when the worst value is above the bound.
+/// One row of the table in docs/limits.md: prints it and fails the test when the worst value is above the bound.
 /// @param asked  the bound that was aimed at, where the one asserted is only what is reached so far: the row is marked as short
 inline void expectAtMost(const std::string& name, size_t inputs, double worst, double bound, double asked = NAN)
 {

@@ -72,7 +72,7 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     BakeReport report;
     const auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
     ASSERT_TRUE(field) << field.error().message;
-    const auto light = LightField::create(gpu(), *field);
+    const auto light = makeLightField(gpu(), *field);
     ASSERT_TRUE(light) << light.error().message;
 
     // The back wall, seen from the middle of the open side; roughness from mirror to rough along x.
@@ -96,7 +96,7 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     IndirectLight::Desc desc;
     desc.width = desc.height = kSide;
     desc.effects.temporal = true;
-    auto indirect = IndirectLight::create(gpu(), *light, desc);
+    auto indirect = makeIndirectLight(gpu(), *light, desc);
     ASSERT_TRUE(indirect) << indirect.error().message;
     indirect->setInputs({depthImage.view(), normalImage.view(), baseImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     gpu::FrameView view{};

@@ -61,7 +61,7 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     ASSERT_TRUE(field) << field.error().message;
     const auto device = DeviceScene::create(gpu(), scene, field->info);
     ASSERT_TRUE(device) << device.error().message;
-    const auto light = LightField::create(gpu(), *field);
+    const auto light = makeLightField(gpu(), *field);
     ASSERT_TRUE(light) << light.error().message;
     RenderSettings render;
     render.width = render.height = 112; // 12,544 pixels, a glossy ray each

@@ -60,7 +60,7 @@ protected:
         const auto field = bakeLightField(gpu().host, picture.scene, picture.probes, bake, {}, report);
         EXPECT_TRUE(field) << field.error().message;
         const auto device = DeviceScene::create(gpu(), picture.scene, field->info, samples());
-        const auto light = LightField::create(gpu(), *field);
+        const auto light = makeLightField(gpu(), *field);
         EXPECT_TRUE(device && light);
         RenderSettings settings;
         settings.width = kWidth;

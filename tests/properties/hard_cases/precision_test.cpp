@@ -65,9 +65,9 @@ TEST_F(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
     FieldData& field = scene->field;
     field.irradiance.assign(size_t(field.info.probeCount) * kIrradianceWordsPerProbe, 0);
     const RaySet set = glossyRaysOf(*scene, kRays);
-    auto device = LightField::create(gpu(), field);
+    auto device = makeLightField(gpu(), field);
     ASSERT_TRUE(device) << device.error().message;
-    auto tracer = RayTracer::create(gpu(), *device);
+    auto tracer = makeRayTracer(gpu(), *device);
     ASSERT_TRUE(tracer) << tracer.error().message;
     std::vector<gpu::Ray> rays(set.size());
     for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i], i % 2 == 0 ? set.normals[i] : glm::vec3(0.0f)};

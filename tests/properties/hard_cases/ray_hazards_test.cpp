@@ -1,4 +1,4 @@
-// The hazards that a tracer of probe maps is known to fall into, one test each; the ones met elsewhere are named in docs/hard_cases.md.
+// The hazards that a tracer of probe maps is known to fall into, one test each; the ones met elsewhere are named in docs/limits.md.
 #include <cmath>
 
 #include <gtest/gtest.h>

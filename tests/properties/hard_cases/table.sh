@@ -1,23 +1,29 @@
 #!/usr/bin/env bash
-# Takes the table of docs/hard_cases.md anew, from one run of the tests that print its rows; a test that fails stops it.
+# Takes bench/results/hard_cases.csv anew, from one run of the tests that print its rows; a test that fails stops it.
+# bench/pages/tables.py then puts what docs/limits.md shows of it there.
 # Usage: [SCONCE_SCENES=<folder of real scenes>] tests/properties/hard_cases/table.sh <build folder>
 set -euo pipefail
 build=${1:?give the build folder}
-document=$(cd "$(dirname "$0")/../../.." && pwd)/docs/hard_cases.md
+root=$(cd "$(dirname "$0")/../../.." && pwd)
+file=$root/bench/results/hard_cases.csv
 rows=$(mktemp) fresh=$(mktemp)
 trap 'rm -f "$rows" "$fresh"' EXIT
 
-run() # area, filter
+run() # program, filter
 {
-    "$build/tests/$1/sconce_$1_tests" --gtest_filter="$2" | tee /dev/stderr | { grep '^| ' || true; } >>"$rows"
+    "$build/tests/properties/$1" --gtest_filter="$2" | tee /dev/stderr | { grep '^| ' || true; } >>"$rows"
 }
-run hard_cases '*'
-run frame 'TemporalTest.AMovingPicture*:FurnaceTest.*'
-run tools 'Independence.*'
+run sconce_hard_cases_tests '*'
+run sconce_frame_tests 'TemporalTest.AMovingPicture*:FurnaceTest.*'
+run sconce_command_properties_tests 'Independence.*'
 
-awk -v rows="$rows" '
-    /^\| case \| inputs \| worst \| bound \|$/ { print; getline; print; while ((getline line < rows) > 0) print line; skipping = 1; next }
-    skipping && /^\| / { next }
-    { skipping = 0; print }' "$document" >"$fresh"
-cat "$fresh" >"$document"
-echo "$(wc -l <"$rows") rows written to $document" >&2
+{
+    sed -n '/^# what:/p' "$file"
+    echo "# command: SCONCE_SCENES=<folder of real scenes> tests/properties/hard_cases/table.sh $1"
+    echo "# commit: $(git -C "$root" rev-parse --short=12 HEAD)"
+    sed -n '/^# machine:/p' "$file"
+    echo case,inputs,worst,bound
+    sed -E 's/^\| //; s/ \|$//' "$rows" | awk -F ' [|] ' '{ printf "\"%s\",%s,%s,%s\n", $1, $2, $3, ($4 ~ /;/ ? "\"" $4 "\"" : $4) }'
+} >"$fresh"
+cat "$fresh" >"$file"
+echo "$(wc -l <"$rows") rows written to $file" >&2

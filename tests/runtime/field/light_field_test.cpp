@@ -33,9 +33,9 @@ TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
 {
     const FieldData field = litCornell();
     const RaySet set = cornellRays(20000);
-    auto device = LightField::create(gpu(), field);
+    auto device = makeLightField(gpu(), field);
     ASSERT_TRUE(device) << device.error().message;
-    auto tracer = RayTracer::create(gpu(), *device);
+    auto tracer = makeRayTracer(gpu(), *device);
     ASSERT_TRUE(tracer) << tracer.error().message;
     std::vector<gpu::Ray> rays(set.size());
     for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i], i % 2 == 0 ? set.normals[i] : glm::vec3(0.0f)};
@@ -63,8 +63,8 @@ TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
 TEST_F(GpuTrace, OddRaysEndFinite)
 {
     const FieldData field = litCornell();
-    auto device = LightField::create(gpu(), field);
-    auto tracer = RayTracer::create(gpu(), *device);
+    auto device = makeLightField(gpu(), field);
+    auto tracer = makeRayTracer(gpu(), *device);
     const float nan = std::nanf(""), inf = INFINITY;
     std::vector<gpu::Ray> rays;
     for (float a : {0.0f, -0.0f, 1.0f, nan, inf, -inf, 1e-40f, 1e30f})
@@ -79,7 +79,7 @@ TEST_F(GpuTrace, RefusesKnobsOutOfRangeByName)
 {
     Quality quality;
     quality.trace.ranked = 9;
-    const auto field = LightField::create(gpu(), cornell().field, quality);
+    const auto field = makeLightField(gpu(), cornell().field, quality);
     ASSERT_FALSE(field);
     EXPECT_NE(field.error().message.find("ranked 9"), std::string::npos);
 }
@@ -87,8 +87,8 @@ TEST_F(GpuTrace, RefusesKnobsOutOfRangeByName)
 TEST_F(GpuTrace, NoRaysIsNoWork)
 {
     const FieldData field = litCornell();
-    auto device = LightField::create(gpu(), field);
-    auto tracer = RayTracer::create(gpu(), *device);
+    auto device = makeLightField(gpu(), field);
+    auto tracer = makeRayTracer(gpu(), *device);
     EXPECT_TRUE(tracer->trace({}, {}));
 }
 

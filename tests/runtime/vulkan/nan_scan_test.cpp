@@ -202,9 +202,9 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         settings.effects.temporal = true;
         const auto drawn = drawWith(*field, scene, settings);
         ASSERT_TRUE(drawn) << drawn.error().message;
-        auto light = LightField::create(gpu(), *field);
+        auto light = makeLightField(gpu(), *field);
         ASSERT_TRUE(light);
-        auto tracer = RayTracer::create(gpu(), *light);
+        auto tracer = makeRayTracer(gpu(), *light);
         ASSERT_TRUE(tracer);
         const std::vector<gpu::Ray> rays(1, {vec3(0.0f, 1.0f, 0.0f), vec3(0.0f, 1.0f, 0.0f), vec3(0.0f)});
         std::vector<gpu::RayHit> hits(rays.size());

@@ -1,0 +1,32 @@
+# The header that is installed: OUT is IN with every header of the project that it includes written into it, each once, but those that lie
+# beside it when installed (shaders/shared). cmake -DROOT=... -DIN=runtime/sconce.h -DOUT=... -P SconceFlatten.cmake
+cmake_minimum_required(VERSION 3.25)
+set(text "#pragma once\n")
+set(seen)
+
+function(flatten file)
+    if("${file}" IN_LIST seen)
+        return()
+    endif()
+    list(APPEND seen "${file}")
+    file(READ "${ROOT}/${file}" content)
+    string(REPLACE "#pragma once\n" "" content "${content}")
+    # A list of lines would lose semicolons and brackets: the text is cut at each include instead.
+    while(content MATCHES "(^|\n)(#include \"((base|runtime|scene|svo)/[a-z_/]+\\.h)\"\n)")
+        set(line "${CMAKE_MATCH_2}")
+        set(included "${CMAKE_MATCH_3}")
+        string(FIND "${content}" "${line}" at)
+        string(SUBSTRING "${content}" 0 ${at} before)
+        string(LENGTH "${line}" length)
+        math(EXPR rest "${at} + ${length}")
+        string(SUBSTRING "${content}" ${rest} -1 content)
+        string(APPEND text "${before}")
+        flatten("${included}")
+    endwhile()
+    string(APPEND text "${content}")
+    set(text "${text}" PARENT_SCOPE)
+    set(seen "${seen}" PARENT_SCOPE)
+endfunction()
+
+flatten("${IN}")
+file(WRITE "${OUT}" "${text}")

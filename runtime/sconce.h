@@ -1,0 +1,189 @@
+#pragma once
+
+// Sconce for hosts: all of the C++ API. Installed as this one file, with what it includes of the library written into it; beside it lie
+// shaders/light_field.glsl and the headers that GLSL and C++ share.
+//
+// A host keeps its instance, device, queue and command buffers. What it gets are handles: they keep alive what they need, so that they may
+// be moved, copied where they can be, and destroyed in any order, once the GPU has finished with them. Calls on one Device and on what was
+// made from it are the host's to serialise; two devices may be used from two threads.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "runtime/field/quality.h"
+#include "runtime/frame/effect_plan.h"
+#include "runtime/frame/g_buffer.h"
+#include "runtime/vulkan/gpu_timer.h"
+#include "runtime/vulkan/host_vulkan.h"
+#include "scene/scene_check.h"
+#include "shaders/shared/frame.h"
+#include "shaders/shared/light_field.h"
+
+namespace sconce
+{
+
+#define SCONCE_VERSION_MAJOR 0
+#define SCONCE_VERSION_MINOR 1
+#define SCONCE_VERSION_PATCH 0
+
+struct Version
+{
+    uint32_t major = SCONCE_VERSION_MAJOR, minor = SCONCE_VERSION_MINOR, patch = SCONCE_VERSION_PATCH;
+    bool operator==(const Version&) const = default;
+};
+/// Of the library that was linked; Version() is that of this header.
+Version libraryVersion();
+
+class Gpu;
+
+/// A host's device, and what the library makes for itself on it: functions, memory, a command buffer for uploads. A shared handle.
+class Device
+{
+public:
+    /// @param header  leave it out: a library of another major or minor version than this header is refused
+    /// Errors: badArgument (a handle is missing, the version), missingFeature (named), deviceFailure.
+    static Result<Device> create(const HostVulkan& host, Version header = {});
+    uint64_t bytes() const;              // of device memory that the library holds now
+    Gpu& gpu() const { return *shared; } // for the library's own folders
+
+private:
+    explicit Device(std::shared_ptr<Gpu> made) : shared(std::move(made)) {}
+    std::shared_ptr<Gpu> shared;
+};
+
+/// A light field on the device: the maps, the octree's 3D texture and the descriptor set that shaders/light_field.glsl expects. A shared
+/// handle: copies are the same field.
+class LightField
+{
+public:
+    /// Reads and uploads a .sconce file. Errors: fileError, badInput (names the damaged block, or the version), badArgument (knobs out of
+    /// range: named), outOfMemory (names the bytes), deviceFailure.
+    static Result<LightField> load(const Device& device, const std::filesystem::path& file, const Quality& quality = {});
+
+    VkDescriptorSetLayout layout() const;  // for a host's own pipeline layouts, at set SCONCE_FIELD_SET
+    VkDescriptorSet descriptorSet() const; // the field's resources
+    /// Values of the first constant ids of a pass that includes shaders/light_field.glsl: `farBounds`, and whether it holds radiance, are
+    /// fixed in a pass when it is made.
+    std::array<uint32_t, 2> constants() const;
+    const gpu::LightFieldInfo& info() const;
+    uint64_t deviceBytes() const;
+    bool holdsRadiance() const;    // as rays need it
+    bool holdsPrefiltered() const; // as rough reflections need it
+    bool holdsPatches() const;     // as diffuse light by patches needs them
+    /// Names of the effects that its scene called for when it was baked (SceneEffect::name).
+    const std::vector<std::string>& effects() const;
+    /// What a frame in its scene needs of indirect light, by these effects: what isn't called for costs nothing.
+    IndirectEffects effectsOfFrames() const;
+    /// Takes effect for command buffers submitted after it. Not while the GPU reads the field. Errors: badArgument (names the knob).
+    Status setQuality(const Quality& quality);
+
+    struct State; // of the library's own folders
+    explicit LightField(std::shared_ptr<State> made);
+    State& state() const { return *shared; }
+
+private:
+    std::shared_ptr<State> shared;
+};
+
+/// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
+/// Move-only; it keeps its light field.
+class IndirectLight
+{
+public:
+    struct Desc
+    {
+        uint32_t width = 0, height = 0; // pixels, 1 to the device's largest image
+        IndirectEffects effects;        // LightField::effectsOfFrames() has those that the scene calls for
+        uint32_t traceEvery = 1; // trace one pixel of 1, 2, 4, 8 or 16, of reflections and of traced diffuse light, and make the rest from
+                                 // it: shaders/reconstruct.comp. Mirrors are traced at every pixel
+        bool counts = false;     // write what each pixel's ray cost: an image of 16 bytes a pixel
+    };
+    /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL; all null when the effect is off.
+    struct Output
+    {
+        VkImage image = VK_NULL_HANDLE;
+        VkImageView view = VK_NULL_HANDLE;
+        VkFormat format = VK_FORMAT_UNDEFINED;
+    };
+
+    /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, deviceFailure.
+    static Result<IndirectLight> create(const Device& device, const LightField& field, const Desc& desc);
+    IndirectLight(IndirectLight&&) noexcept;
+    IndirectLight& operator=(IndirectLight&&) noexcept;
+    ~IndirectLight();
+
+    /// Binds the G-buffer; before the first record and whenever its views change. Not while the GPU runs a recorded frame.
+    void setInputs(const FrameInputs& inputs);
+    /// Record frames in the order in which they are shown, where the effect `temporal` is on. Ends with the barrier that lets any later
+    /// stage read the outputs.
+    /// @param timer  optional; scopes "classify tiles", "gather light", "diffuse trace", "glossy trace", "mirror trace", "diffuse fill",
+    ///               "glossy fill", "glossy denoise"
+    void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
+
+    // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; shaders/compose.comp shows
+    // how they make a picture. RGBA32F.
+    Output diffuse() const; // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light straight from emitters or sky,
+                            // unless it is traced
+    Output rough() const;   // rgb radiance reflected to the eye, BRDF included; as the next two
+    Output glossy() const;
+    Output mirror() const;
+    Output counts() const; // RGBA32UI: probe, hand-offs, reads, unknown rays; of the traced terms
+    uint64_t deviceBytes() const;
+
+    struct State; // of the library's own folders
+    explicit IndirectLight(std::unique_ptr<State> made);
+    State& state() const { return *owned; }
+
+private:
+    std::unique_ptr<State> owned;
+};
+
+/// Traces lists of rays through a light field: for a host's own questions. A shared handle; it keeps its light field.
+class RayTracer
+{
+public:
+    /// Errors: outOfMemory, deviceFailure.
+    static Result<RayTracer> create(const Device& device, const LightField& field);
+
+    /// Records the trace of `count` rays; ends with the barrier that lets any stage read the hits. Any number of records may be in one
+    /// command buffer and in flight at once. Never allocates, throws or submits.
+    /// @param rays  device address of gpu::Ray[count]
+    /// @param hits  device address of gpu::RayHit[count]; must not overlap the rays
+    void record(VkCommandBuffer cmd, VkDeviceAddress rays, VkDeviceAddress hits, uint32_t count) const noexcept;
+    /// Uploads, traces and downloads, in pieces of at most 2^18 rays; waits for the result. Misuse: spans of different length assert.
+    /// @param milliseconds  of the trace passes alone, by the GPU's clock; 0 when the queue has none
+    /// Errors: outOfMemory, deviceFailure.
+    Status trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds = nullptr) const;
+
+    struct State; // of the library's own folders
+    explicit RayTracer(std::shared_ptr<State> made);
+    State& state() const { return *shared; }
+
+private:
+    std::shared_ptr<State> shared;
+};
+
+/// What a light field is baked with. The command's `bake` has further knobs.
+struct BakeDesc
+{
+    uint32_t resolution = 512;    // texels a side of an octahedral map; cube faces have half of it; memory grows with its square
+    uint32_t bounces = 2;         // times the baked light is re-injected at most, 0..64; each costs one gather a texel
+    float converged = 0.0f;       // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
+    std::string effects = "auto"; // as planEffects()
+};
+
+/// Bakes a scene at given probes on the host's device and writes the field to a file, whole or not at all. Submits and waits. Same input,
+/// same driver: same bytes.
+/// @param probes  world, metres; 1 to 65,535
+/// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, fileError, cancelled.
+Status bakeLightField(const Device& device, const Scene& scene, std::span<const vec3> probes, const BakeDesc& desc,
+                      const std::filesystem::path& file, const Progress& progress = {});
+
+} // namespace sconce

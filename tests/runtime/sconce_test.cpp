@@ -1,0 +1,191 @@
+// The door: handles that keep alive what they need.
+#include "runtime/sconce.h"
+
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "runtime/bake/bake.h"
+#include "runtime/field/light_field.h"
+#include "runtime/field/light_field_file.h"
+#include "runtime/frame/indirect_light.h"
+#include "scene/builtin_scenes.h"
+#include "tests/support/device.h"
+#include "tests/support/files.h"
+
+namespace sconce
+{
+namespace
+{
+
+using testing_support::TestFolder;
+using testing_support::ValidatedDevice;
+
+class Door : public testing::Test
+{
+protected:
+    static void SetUpTestSuite()
+    {
+        folder = new TestFolder;
+        ValidatedDevice owner;
+        const auto device = Device::create(owner.host());
+        ASSERT_TRUE(device) << device.error().message;
+        const auto scene = makeBuiltinScene("cornell-glossy");
+        ASSERT_TRUE(scene);
+        const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}, {0.3f, 0.5f, 0.3f}};
+        BakeDesc desc;
+        desc.resolution = 64;
+        desc.bounces = 1;
+        const Status baked = bakeLightField(*device, *scene, probes, desc, file());
+        ASSERT_TRUE(baked) << baked.error().message;
+    }
+    static void TearDownTestSuite() { delete folder; }
+    static std::string file() { return *folder / "field.sconce"; }
+
+    static std::vector<gpu::Ray> rays(uint32_t count, float turn)
+    {
+        std::vector<gpu::Ray> made(count);
+        for (uint32_t i = 0; i < count; ++i)
+        {
+            const float angle = turn + 0.1f * float(i);
+            made[i] = {vec3(0.0f, 1.0f, 0.0f), glm::normalize(vec3(std::cos(angle), 0.3f * std::sin(3.0f * angle), std::sin(angle))),
+                       vec3(0.0f)};
+        }
+        return made;
+    }
+
+    static TestFolder* folder;
+};
+TestFolder* Door::folder = nullptr;
+
+TEST_F(Door, BakesTheBytesOfTheBakeBehindIt)
+{
+    ValidatedDevice owner;
+    auto scene = makeBuiltinScene("cornell-glossy");
+    ASSERT_TRUE(scene);
+    const auto plan = planEffects(checkScene(*scene));
+    ASSERT_TRUE(plan);
+    BakeSettings settings;
+    settings.resolution = 64;
+    settings.bounces = 1;
+    settings.take(*plan);
+    BakeReport report;
+    const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}, {0.3f, 0.5f, 0.3f}};
+    const auto field = bakeLightField(owner.host(), *scene, probes, settings, {}, report);
+    ASSERT_TRUE(field) << field.error().message;
+    ASSERT_TRUE(saveField(*field, *folder / "behind.sconce"));
+    EXPECT_EQ(testing_support::readText(*folder / "behind.sconce"), testing_support::readText(file()));
+}
+
+TEST_F(Door, HandlesOutliveWhatTheyWereMadeFrom)
+{
+    ValidatedDevice owner;
+    std::optional<RayTracer> tracer;
+    std::optional<IndirectLight> light;
+    std::vector<gpu::RayHit> before(50), after(50);
+    {
+        auto device = Device::create(owner.host());
+        ASSERT_TRUE(device) << device.error().message;
+        auto field = LightField::load(*device, file());
+        ASSERT_TRUE(field) << field.error().message;
+        auto madeTracer = RayTracer::create(*device, *field);
+        ASSERT_TRUE(madeTracer);
+        ASSERT_TRUE(madeTracer->trace(rays(50, 0.0f), before));
+        tracer = *madeTracer;
+        auto madeLight = IndirectLight::create(*device, *field, {.width = 16, .height = 16, .effects = field->effectsOfFrames()});
+        ASSERT_TRUE(madeLight) << madeLight.error().message;
+        light.emplace(std::move(*madeLight));
+        LightField moved = std::move(*field); // what a tracer or a frame keeps doesn't follow the handle
+        EXPECT_EQ(moved.info().probeCount, 2u);
+    }
+    ASSERT_TRUE(tracer->trace(rays(50, 0.0f), after));
+    for (size_t i = 0; i < before.size(); ++i) EXPECT_EQ(before[i].t, after[i].t) << i;
+    EXPECT_NE(light->glossy().view, VkImageView{});
+    const auto submitted = light->state().gpu->submit([&](VkCommandBuffer) {});
+    EXPECT_TRUE(submitted);
+}
+
+// Two records in one command buffer, with other rays, hits and counts: the first must not get the second's.
+TEST_F(Door, RecordsOfOneTracerDoNotDisturbEachOther)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    const auto field = LightField::load(*device, file());
+    ASSERT_TRUE(field);
+    const auto tracer = RayTracer::create(*device, *field);
+    ASSERT_TRUE(tracer);
+    Gpu& gpu = device->gpu();
+    const uint32_t counts[2] = {70, 130};
+    std::vector<gpu::Ray> asked[2] = {rays(70, 0.0f), rays(130, 1.0f)};
+    std::vector<gpu::RayHit> alone[2], together[2];
+    Buffer rayBuffers[2], hitBuffers[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        alone[i].resize(counts[i]), together[i].resize(counts[i]);
+        ASSERT_TRUE(tracer->trace(asked[i], alone[i]));
+        auto in = gpu.makeBufferWith<gpu::Ray>(asked[i], 0, "rays");
+        auto out = gpu.makeBuffer(counts[i] * sizeof(gpu::RayHit), 0, MemoryUse::device, "hits");
+        ASSERT_TRUE(in && out);
+        rayBuffers[i] = std::move(*in), hitBuffers[i] = std::move(*out);
+    }
+    ASSERT_TRUE(gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            for (int i = 0; i < 2; ++i) tracer->record(cmd, rayBuffers[i].address(), hitBuffers[i].address(), counts[i]);
+        }));
+    for (int i = 0; i < 2; ++i)
+    {
+        ASSERT_TRUE(gpu.download(hitBuffers[i], 0, std::as_writable_bytes(std::span(together[i]))));
+        EXPECT_EQ(std::memcmp(alone[i].data(), together[i].data(), counts[i] * sizeof(gpu::RayHit)), 0) << i;
+    }
+}
+
+TEST_F(Door, RefusesAHeaderOfAnotherVersion)
+{
+    ValidatedDevice owner;
+    const Version mine = libraryVersion();
+    for (const Version other : {Version{mine.major + 1, mine.minor, 0}, Version{mine.major, mine.minor + 1, 0}})
+    {
+        const auto refused = Device::create(owner.host(), other);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::badArgument);
+        EXPECT_NE(refused.error().message.find(std::to_string(other.major) + "." + std::to_string(other.minor)), std::string::npos);
+    }
+    EXPECT_TRUE(Device::create(owner.host(), {mine.major, mine.minor, mine.patch + 1}));
+}
+
+TEST_F(Door, SaysWhatAFramesEffectsAre)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    const auto field = LightField::load(*device, file());
+    ASSERT_TRUE(field);
+    const auto scene = makeBuiltinScene("cornell-glossy");
+    const IndirectEffects called = planEffects(checkScene(*scene))->indirect(), told = field->effectsOfFrames();
+    EXPECT_EQ(told.diffuse, called.diffuse);
+    EXPECT_EQ(told.rough, called.rough);
+    EXPECT_EQ(told.glossy, called.glossy);
+    EXPECT_EQ(told.mirror, called.mirror);
+    EXPECT_EQ(told.denoise, called.denoise);
+    EXPECT_GT(device->bytes(), field->deviceBytes());
+}
+
+TEST_F(Door, SaysWhatIsWrongWithAFileOrAKnob)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    const auto missing = LightField::load(*device, *folder / "none.sconce");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::fileError);
+    Quality quality;
+    quality.trace.ranked = 9;
+    const auto refused = LightField::load(*device, file(), quality);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("ranked"), std::string::npos);
+}
+
+} // namespace
+} // namespace sconce
