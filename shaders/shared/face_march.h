@@ -225,7 +225,9 @@ SCONCE_FN real timeAt(SCONCE_IN(Segment) g, real s) { return (g.tq0 + s * g.dtq)
 SCONCE_FN void rememberSurfel(SCONCE_INOUT(RayState) r, real s)
 {
     real size = real(mirrorSize());
-    vec2 p = vec2(clamp(r.segment.P.x + s * r.segment.dP.x, real(r.segment.ix), real(r.segment.ix) + real(1.0)), clamp(r.segment.P.y + s * r.segment.dP.y, real(r.segment.iy), real(r.segment.iy) + real(1.0)));
+    real x = real(r.segment.ix);
+    real y = real(r.segment.iy);
+    vec2 p = vec2(clamp(r.segment.P.x + s * r.segment.dP.x, x, x + real(1.0)), clamp(r.segment.P.y + s * r.segment.dP.y, y, y + real(1.0)));
     r.surfel.pixel = vec2(r.segment.mirrorX != 0 ? size - p.x : p.x, r.segment.mirrorY != 0 ? size - p.y : p.y);
     r.surfel.word = r.segment.word;
     r.surfel.probe = r.visit.probe;

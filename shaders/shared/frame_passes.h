@@ -1,5 +1,5 @@
 // The interfaces of the passes of a frame: bindings of their set 1, ids of their constants, push constants.
-#include "shared/light_field.h"
+#include "shared/gpu_types.h"
 #ifndef SCONCE_FRAME_PASSES_H
 #define SCONCE_FRAME_PASSES_H
 SCONCE_STRUCTS_BEGIN
@@ -39,7 +39,7 @@ const uint kComposeBeautyBinding = 9u;
 const uint kComposeDiffuseLayerBinding = 10u;
 const uint kComposeGlossyLayerBinding = 11u;
 
-// Constants, numbered over all passes, after the light field's (light_field.h).
+// Constants, numbered over all passes, after the light field's (field_passes.h).
 const uint kTiledId = 2u;
 const uint kTermId = 3u;
 const uint kEveryLogId = 4u; // trace_glossy.comp, reconstruct.comp, classify_tiles.comp

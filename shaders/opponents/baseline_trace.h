@@ -1,4 +1,4 @@
-// The opponents' loop over probes: from a ray to its result. kBaseline (shared/baseline.h) says whose.
+// The opponents' loop over probes: from a ray to its result. kBaseline (baseline.h) says whose.
 //   B0       the supplement's: the eight corners of the grid cell of the origin, +3 mod 8, indices that wrap at the far borders
 //   B0+      the paper's re-pick of the cell as the ray proceeds, borders clamped
 //   others   the ranked list of the octree's leaf at the point reached, and when that is used up those a little further on; probes tried
