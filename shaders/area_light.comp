@@ -4,8 +4,6 @@
 #ifdef SCONCE_FIELD_SHADOWS
 #define SCONCE_FIELD_SET 2
 #include "light_field.glsl"
-#define SCONCE_HAS_CHART
-#define SCONCE_TILE_CONSTANT 2 // after the field's constants
 #endif
 #include "lights.glsl"
 #include "gbuffer_read.glsl"
@@ -16,14 +14,9 @@
 // can be long. Each pixel takes another subset; the filter after it blends them.
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 1, binding = 4) uniform texture2D gGeometricNormal;
-layout(set = 1, binding = 5, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
-layout(scalar, push_constant) uniform Push
-{
-    vec3 origin;  // of field space, world metres
-    float scale;  // metres per field unit
-    uint samples; // of the emitters, and as many of the sky, a pixel
-};
+layout(set = 1, binding = kAreaNormalBinding) uniform texture2D gGeometricNormal;
+layout(set = 1, binding = kAreaDiffuseBinding, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
+layout(scalar, push_constant) uniform Push { AreaPush push; };
 
 #ifdef SCONCE_FIELD_SHADOWS
 /// As lightAt() of lights.glsl.
@@ -35,7 +28,7 @@ LightSample tracedLightAt(uint kind, uint i, Pixel p, vec3 point, vec3 geometric
         s.irradiance = vec3(0.0);
         return s;
     }
-    float far = kind == kLightSky ? 1e30 : distance(lights[i].position, point) * scale;
+    float far = kind == kLightSky ? 1e30 : distance(lights[i].position, point) * push.scale;
     if (!lightReaches(p.position + frame.normalOffset * geometric, s.toLight, far, geometric)) s.irradiance = vec3(0.0);
     return s;
 }
@@ -44,7 +37,7 @@ LightSample tracedLightAt(uint kind, uint i, Pixel p, vec3 point, vec3 geometric
 /// Mean over a subset of the lights [first, first + count), all of a kind, scaled to all of them, of their irradiance times the cosine.
 vec3 someLights(uint kind, Pixel p, vec3 point, vec3 geometric, uint first, uint count, uint stream, ivec2 at)
 {
-    uint taken = min(samples, count);
+    uint taken = min(push.samples, count);
     if (taken == 0u) return vec3(0.0);
     float start = randomPair(uvec2(at), 0u, stream, frame.seed).x;
     vec3 sum = vec3(0.0);
@@ -68,9 +61,9 @@ void main()
     Pixel p = readPixel(at);
     if (!p.surface || isNotOf(kTermDiffuse, termsOf(p))) return;
     vec3 light = imageLoad(diffuse, at).rgb;
-    vec3 point = (p.position - origin) / scale;
+    vec3 point = (p.position - push.origin) / push.scale;
     vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
     vec3 irradiance = someLights(kLightEmitter, p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
                       someLights(kLightSky, p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
-    imageStore(diffuse, at, vec4(light + irradiance / SCONCE_BRDF_PI, 1.0));
+    imageStore(diffuse, at, vec4(light + irradiance / kBrdfPi, 1.0));
 }

@@ -4,7 +4,7 @@
 
 // Bake: an octahedral irradiance or moments map, gathered from coarse cells. Irradiance: cosine-weighted mean radiance, irradiance / pi.
 // MOMENTS: mean and variance of the distance under the lobe cos^50 (McGuire et al. 2017, section 5.2). Writes every second word.
-// `level` is the cells a side. Dispatch: ceil(kIrradianceSize/8) twice.
+// `push.level` is the cells a side. Dispatch: ceil(kIrradianceSize/8) twice.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Cells { vec4 value[]; };
 
@@ -13,10 +13,10 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (at.x >= kIrradianceSize || at.y >= kIrradianceSize) return;
     vec3 direction = directionFromOctahedral((vec2(at) + 0.5) / float(kIrradianceSize));
-    Cells cells = Cells(uvec2(extra));
-    BakeWords irradiance = words; // this pass reads no distances
-    uint width = level;
-    int faces = chart == kChartCube ? 6 : 1;
+    Cells cells = Cells(uvec2(push.extra));
+    BakeWords irradiance = push.words; // this pass reads no distances
+    uint width = push.level;
+    int faces = push.chart == kChartCube ? 6 : 1;
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int face = 0; face < faces; ++face)
@@ -24,7 +24,7 @@ void main()
             for (uint x = 0u; x < width; ++x)
             {
                 vec2 uv = texelOnFace(uvec2(x, y), width);
-                vec3 d = chart == kChartCube ? normalize(faceDirection(face, vec3(uv, 1.0))) : directionFromOctahedral(0.5 * uv + 0.5);
+                vec3 d = push.chart == kChartCube ? normalize(faceDirection(face, vec3(uv, 1.0))) : directionFromOctahedral(0.5 * uv + 0.5);
                 float weight = max(dot(d, direction), 0.0);
 #ifdef MOMENTS
                 if (weight < 0.8) continue; // 0.8^50 = 1.4e-5

@@ -10,9 +10,9 @@ layout(location = 3) flat out uint outMaterial;
 
 void main()
 {
-    outRelative = inPosition - centre;
+    outRelative = inPosition - view.centre;
     outNormal = inNormal;
     outUv = inUv;
     outMaterial = inMaterial;
-    gl_Position = clip * vec4(outRelative, 1.0);
+    gl_Position = view.clip * vec4(outRelative, 1.0);
 }

@@ -9,15 +9,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
-    uint width = size / kLowFactor;
+    uint width = push.size / kLowFactor;
     if (at.x >= width || at.y >= width) return;
     uint low = 0xffffu, high = 0u;
     for (uint child = 0u; child < kLowFactor * kLowFactor; ++child)
     {
         uvec2 texel = at * kLowFactor + uvec2(child % kLowFactor, child / kLowFactor);
-        uint r = words.word[texel.y * size + texel.x] & 0xffffu;
+        uint r = push.words.word[texel.y * push.size + texel.x] & 0xffffu;
         low = min(low, r);
         high = max(high, r);
     }
-    words.word[size * size + at.y * width + at.x] = low | (high << 16);
+    push.words.word[push.size * push.size + at.y * width + at.x] = low | (high << 16);
 }

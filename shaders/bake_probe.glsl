@@ -1,31 +1,9 @@
 // What the bake's compute passes over one probe share.
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_buffer_reference_uvec2 : require
-#include "shared/gpu_types.h"
+#include "shared/bake_passes.h"
 #include "shared/light_field.h"
-#include "shared/texel.h"
-#define SCONCE_HAS_CHART
-#include "shared/chart.h"
-#include "shared/color.h"
+#include "shared/pure_text.h"
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BakeWords { uint word[]; };
-
-layout(scalar, push_constant) uniform Push
-{
-    BakeWords words;    // distance words of the probe
-    BakeWords radiance; // R11G11B10F
-    BakeWords surface;  // reflectance 5:6:5, shading normal << 16; 0: sky
-    BakeWords extra;    // a pass's other buffer
-    vec3 centre;        // of the probe, field space
-    float nearPlane;    // W of depth 1, field units
-    uint size;          // texels a side of a face (or of the octahedral map)
-    uint faceWords;     // distance words a face
-    uint chart;
-    uint level;         // chain: the level written
-    vec3 sky;
-    float skyDistance;  // that the moments count for sky, field units
-    BakeWords emitted;  // emission a radiance texel, R11G11B10F; null: the scene has no emitters
-};
+layout(scalar, push_constant) uniform Push { BakePush push; };
 
 bool isNull(BakeWords words) { return uvec2(words) == uvec2(0u); }
 

@@ -8,8 +8,8 @@
 // which ask them of every neighbour. The order of a list varies from run to run; no pixel depends on it.
 // `runs` and `sparseRuns` start as (kTileRow, 0, 1, 0). Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 0) const uint kEveryLog = 0u; // log2 of the tiles that a workgroup of a sparse pass takes
-layout(scalar, set = 1, binding = 8) buffer SconceTiles
+layout(constant_id = kEveryLogId) const uint kEveryLog = 0u; // log2 of the tiles that a workgroup of a sparse pass takes
+layout(scalar, set = 1, binding = kTileBinding) buffer SconceTiles
 {
     TileRuns runs[kListCount];
     TileRuns sparseRuns[kListCount];

@@ -7,17 +7,17 @@
 // The frame's picture: direct light and the terms of indirect light that a pixel has and that are made; the image of a term is read where
 // the pixel has the term, and nowhere else. Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 0) const uint kMade = 15u;     // bit i: term i is made
-layout(constant_id = 1) const bool kDiffuseLayer = true; // write the term's share of the picture, too
-layout(constant_id = 2) const bool kGlossyLayer = true;
-layout(set = 1, binding = 4, rgba32f) readonly uniform image2D direct;
-layout(set = 1, binding = 5, rgba32f) readonly uniform image2D diffuse; // cosine-weighted mean of the arriving radiance
-layout(set = 1, binding = 6, rgba32f) readonly uniform image2D rough;   // these three: radiance reflected to the eye
-layout(set = 1, binding = 7, rgba32f) readonly uniform image2D glossy;
-layout(set = 1, binding = 8, rgba32f) readonly uniform image2D mirror;
-layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D beauty;
-layout(set = 1, binding = 10, rgba32f) writeonly uniform image2D diffuseLayer; // rgb radiance to the eye
-layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D glossyLayer;  // of all reflections
+layout(constant_id = kMadeId) const uint kMade = 15u;     // bit i: term i is made
+layout(constant_id = kDiffuseLayerId) const bool kDiffuseLayer = true; // write the term's share of the picture, too
+layout(constant_id = kGlossyLayerId) const bool kGlossyLayer = true;
+layout(set = 1, binding = kComposeDirectBinding, rgba32f) readonly uniform image2D direct;
+layout(set = 1, binding = kComposeDiffuseBinding, rgba32f) readonly uniform image2D diffuse; // cosine-weighted mean of the arriving radiance
+layout(set = 1, binding = kComposeRoughBinding, rgba32f) readonly uniform image2D rough;   // these three: radiance reflected to the eye
+layout(set = 1, binding = kComposeGlossyBinding, rgba32f) readonly uniform image2D glossy;
+layout(set = 1, binding = kComposeMirrorBinding, rgba32f) readonly uniform image2D mirror;
+layout(set = 1, binding = kComposeBeautyBinding, rgba32f) writeonly uniform image2D beauty;
+layout(set = 1, binding = kComposeDiffuseLayerBinding, rgba32f) writeonly uniform image2D diffuseLayer; // rgb radiance to the eye
+layout(set = 1, binding = kComposeGlossyLayerBinding, rgba32f) writeonly uniform image2D glossyLayer;  // of all reflections
 
 /// 1/pi times the integral of Schlick's (1 - v.h)^5 over the hemisphere of l, weighted by its cosine: what the specular lobe takes from
 /// white light before the diffuse one. A polynomial fit to the integral, within 1.3e-5 for every angle.

@@ -10,15 +10,11 @@
 // McGuire et al. 2017, section 5.1, filter glossy light narrowly and diffuse light widely: here a glossy pixel's reach follows its roughness.
 // Only pixels that have the term are read. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 1) const uint kTerm = kTermGlossy;
-layout(constant_id = 2) const bool kBlended = false; // the light's a is the number of frames blended into it (temporal.comp)
-layout(set = 1, binding = 4, rgba32f) readonly uniform image2D noisy;
-layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D smooth_;
-layout(scalar, push_constant) uniform Push
-{
-    int stride;          // pixels between taps
-    int followRoughness; // 1: the reach shrinks with roughness, to nothing for a mirror
-};
+layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
+layout(constant_id = kBlendedId) const bool kBlended = false; // the light's a is the number of frames blended into it (temporal.comp)
+layout(set = 1, binding = kFilterFromBinding, rgba32f) readonly uniform image2D noisy;
+layout(set = 1, binding = kFilterToBinding, rgba32f) writeonly uniform image2D smooth_;
+layout(scalar, push_constant) uniform Push { DenoisePush push; };
 
 const float kHat[2] = float[](1.0 / 2.0, 1.0 / 4.0);
 
@@ -29,10 +25,10 @@ void main()
     Pixel p = readPixel(at);
     if (isNotOf(kTerm, termsOf(p))) return;
     vec4 own = imageLoad(noisy, at);
-    float reach = followRoughness != 0 ? filterReach(p.brdf.roughness) : kFilterReach;
+    float reach = push.followRoughness != 0 ? filterReach(p.brdf.roughness) : kFilterReach;
     reach *= inversesqrt(float(frame.glossyRays)); // as the noise falls
     if (kBlended) reach = max(reach * inversesqrt(max(own.a, 1.0)), min(reach, 2.0));
-    if (!p.surface || reach < float(stride))
+    if (!p.surface || reach < float(push.stride))
     {
         imageStore(smooth_, at, own);
         return;
@@ -43,8 +39,8 @@ void main()
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
         {
-            ivec2 tap = at + stride * ivec2(dx, dy);
-            if (float(stride * stride * (dx * dx + dy * dy)) > reach * reach || any(lessThan(tap, ivec2(0))) ||
+            ivec2 tap = at + push.stride * ivec2(dx, dy);
+            if (float(push.stride * push.stride * (dx * dx + dy * dy)) > reach * reach || any(lessThan(tap, ivec2(0))) ||
                 any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
             if ((termsAt(tap) & (1u << kTerm)) == 0u) continue;
             Pixel q = readPixel(tap);

@@ -7,29 +7,23 @@
 // Direct light of the frame: what a surface emits, and the shadowed light of the sun and of punctual lights; the sky where nothing is.
 // Emitters and the sky light surfaces through the light field. Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 1, binding = 4) uniform texture2D gEmission;
-layout(set = 1, binding = 5) uniform texture2D gGeometricNormal;
-layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D direct; // rgb radiance to the eye
-layout(scalar, push_constant) uniform Push
-{
-    vec3 origin;  // of field space, world metres
-    float scale;  // metres per field unit
-    vec3 sky;     // W/(m^2 sr)
-    uint lightCount; // delta lights at the front of the list
-};
+layout(set = 1, binding = kDirectEmissionBinding) uniform texture2D gEmission;
+layout(set = 1, binding = kDirectNormalBinding) uniform texture2D gGeometricNormal;
+layout(set = 1, binding = kDirectLightBinding, rgba32f) writeonly uniform image2D direct; // rgb radiance to the eye
+layout(scalar, push_constant) uniform Push { DirectPush push; };
 
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
     Pixel p = readPixel(at);
-    vec3 light = sky;
+    vec3 light = push.sky;
     if (p.surface)
     {
         light = texelFetch(gEmission, at, 0).rgb;
         vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
-        vec3 point = (p.position - origin) / scale;
-        for (uint i = 0u; i < lightCount; ++i)
+        vec3 point = (p.position - push.origin) / push.scale;
+        for (uint i = 0u; i < push.lightCount; ++i)
         {
             LightSample s = lightAt(lights[i].type, i, point, geometric);
             BrdfValue f = evaluateBrdf(p.brdf, p.normal, p.view, s.toLight);

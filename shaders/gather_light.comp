@@ -2,20 +2,19 @@
 #extension GL_GOOGLE_include_directive : require
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
-#define SCONCE_TILE_CONSTANT 2
 #include "tiles.glsl"
 
 // Light that needs no ray, from the pixel's ranked probes weighted by visibility: diffuse by their prefiltered irradiance, rough reflections
 // by their prefiltered radiance. The leaf is looked up at points dithered by a voxel, so that no border of a voxel shows.
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 5) const uint kList = kListGathered;
-layout(constant_id = 3) const bool kDiffuse = true; // make the diffuse light
-layout(constant_id = 4) const bool kRough = true;   // make the rough reflections
-layout(constant_id = 6) const bool kByPatches = false; // diffuse light from one probe's patches
-layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
-layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
-layout(scalar, set = 1, binding = 6) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/frame/environment_brdf.h
+layout(constant_id = kListId) const uint kList = kListGathered;
+layout(constant_id = kGatherDiffuseId) const bool kDiffuse = true; // make the diffuse light
+layout(constant_id = kGatherRoughId) const bool kRough = true;   // make the rough reflections
+layout(constant_id = kByPatchesId) const bool kByPatches = false; // diffuse light from one probe's patches
+layout(set = 1, binding = kGatherDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
+layout(set = 1, binding = kGatherRoughBinding, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
+layout(scalar, set = 1, binding = kEnvironmentBrdfBinding) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/frame/environment_brdf.h
 
 const uint kLookUps = 4u; // dithered look-ups a pixel
 

@@ -11,7 +11,7 @@ layout(location = 0) out vec4 outNormalRoughness;
 layout(location = 1) out vec4 outBaseColorMetallic;
 layout(location = 2) out vec4 outEmission;
 layout(location = 3) out vec4 outGeometricNormal;
-layout(constant_id = 0) const float kRoughnessOverride = -1.0; // >= 0: every surface has this roughness
+layout(constant_id = kRoughnessOverrideId) const float kRoughnessOverride = -1.0; // >= 0: every surface has this roughness
 
 void main()
 {

@@ -1,6 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/gpu_types.h"
 #include "scene_vertex.glsl"
 
 // The frame's G-buffer: the scene seen by a camera. Depth is reversed and infinite: near/W.
@@ -11,9 +10,9 @@ layout(location = 3) flat out uint material;
 
 void main()
 {
-    relative = inPosition - centre;
+    relative = inPosition - view.centre;
     normal = inNormal;
     uv = inUv;
     material = inMaterial;
-    gl_Position = clip * vec4(relative, 1.0);
+    gl_Position = view.clip * vec4(relative, 1.0);
 }

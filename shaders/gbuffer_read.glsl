@@ -1,11 +1,12 @@
 // A host's G-buffer as the passes read it.
 #include "shared/frame.h"
+#include "shared/frame_passes.h"
 #include "shared/brdf.h"
 
-layout(set = 1, binding = 0) uniform texture2D gDepth;           // r: reversed depth; 0 is the sky
-layout(set = 1, binding = 1) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness
-layout(set = 1, binding = 2) uniform texture2D gBaseColorMetallic; // rgb linear, a metallic
-layout(scalar, set = 1, binding = 3) uniform SconceFrame { FrameView frame; };
+layout(set = 1, binding = kDepthBinding) uniform texture2D gDepth;           // r: reversed depth; 0 is the sky
+layout(set = 1, binding = kNormalRoughnessBinding) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness
+layout(set = 1, binding = kBaseColorMetallicBinding) uniform texture2D gBaseColorMetallic; // rgb linear, a metallic
+layout(scalar, set = 1, binding = kFrameBinding) uniform SconceFrame { FrameView frame; };
 
 struct Pixel
 {

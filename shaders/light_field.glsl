@@ -5,7 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-#include "shared/light_field.h"
+#include "shared/field_passes.h"
 #define SCONCE_GLSL_VERSION 1
 #ifndef SCONCE_FIELD_SET
 #define SCONCE_FIELD_SET 0
@@ -13,27 +13,19 @@
 
 // The maps are read through addresses: one probe set may exceed what a storage buffer descriptor can span (128 MiB on software Vulkan).
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SconceWords { uint word[]; };
-layout(scalar, set = SCONCE_FIELD_SET, binding = 0) uniform SconceField
-{
-    LightFieldInfo field;
-    TraceQuality quality;
-    uvec2 distanceAddress;   // words of FieldData::distance
-    uvec2 radianceAddress;   // FieldData::radiance
-    uvec2 irradianceAddress; // FieldData::irradiance
-    uvec2 prefilteredAddress; // FieldData::prefiltered
-};
+layout(scalar, set = SCONCE_FIELD_SET, binding = kFieldBlockBinding) uniform SconceField { SCONCE_FIELD_BLOCK };
 // Texels of four words, which software Vulkan loads in less time than as many words of a storage buffer: FieldData::probes, 3 texels each, and
 // FieldData::patches, a texel for two.
-layout(set = SCONCE_FIELD_SET, binding = 1) uniform textureBuffer sconceProbes;
-layout(set = SCONCE_FIELD_SET, binding = 3) uniform utextureBuffer sconcePatches;
-layout(set = SCONCE_FIELD_SET, binding = 2) uniform utexture3D sconceOctree;
+layout(set = SCONCE_FIELD_SET, binding = kFieldProbesBinding) uniform textureBuffer sconceProbes;
+layout(set = SCONCE_FIELD_SET, binding = kFieldPatchesBinding) uniform utextureBuffer sconcePatches;
+layout(set = SCONCE_FIELD_SET, binding = kFieldOctreeBinding) uniform utexture3D sconceOctree;
 
-// Of a pass, so that one without them pays nothing: bit 0 TraceQuality::farBounds, bit 1 the octahedral chart. LightField::constants() holds it.
-layout(constant_id = 0) const uint kFieldFlags = 0u;
-bool readsFarBounds() { return (kFieldFlags & 1u) != 0u; }
-bool onOctahedron() { return (kFieldFlags & 2u) != 0u; }
+// Of a pass; LightField::constants() holds them.
+layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
+bool readsFarBounds() { return (kFieldFlags & kReadsFarBounds) != 0u; }
+bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form.
-layout(constant_id = 1) const bool kHoldsRadiance = true;
+layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
 bool holdsRadiance() { return kHoldsRadiance; }
 
 ProbeHeader probeHeader(uint probe)
@@ -48,25 +40,13 @@ uvec4 patchWords(uint pair) { return texelFetch(sconcePatches, int(pair)); }
 uint prefilteredWord(uint index) { return SconceWords(prefilteredAddress).word[index]; }
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 
-#include "shared/texel.h"
-#include "shared/chart.h"
-#include "shared/color.h"
+#include "shared/pure_text.h"
 #include "shared/octree_descent.h"
-#include "shared/face_chain.h"
 #include "shared/ray_state.h"
 #include "shared/face_march.h"
 #include "shared/probe_trace.h"
 #include "shared/prefiltered.h"
 #include "shared/light_lookup.h"
 #include "shared/ray_query.h"
-#ifdef SCONCE_BASELINE // one of the bench's opponents, by number, in our tracer's place
-#include "shared/baseline.h"
-const uint kBaseline = SCONCE_BASELINE;
-#include "shared/baseline_b0.h"
-#include "shared/baseline_wang.h"
-#include "shared/baseline_trace.h"
-RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return baselineQuery(origin, direction); } // no use for the normal
-#else
 /// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.
 RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return queryRay(origin, direction, normal); }
-#endif

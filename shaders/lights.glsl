@@ -3,10 +3,7 @@
 #define SCONCE_LIGHTS_GLSL
 #include "scene.glsl"
 #include "shared/brdf.h"
-#ifndef SCONCE_HAS_CHART // the shared texts have no guards of their own
-#define SCONCE_HAS_CHART
 #include "shared/chart.h"
-#endif
 
 struct LightSample
 {
@@ -31,7 +28,7 @@ LightSample unshadowedLight(uint kind, uint i, vec3 p)
     {
         // A disc of the patch's area seen on its axis has exactly this form factor (Howell, "A Catalog of Radiation Heat Transfer
         // Configuration Factors", B-12 limit), so a receiver near the patch sees no singularity.
-        s.irradiance *= light.area * abs(dot(s.toLight, light.direction)) / (d2 + light.area / SCONCE_BRDF_PI);
+        s.irradiance *= light.area * abs(dot(s.toLight, light.direction)) / (d2 + light.area / kBrdfPi);
         return s;
     }
     s.irradiance *= distanceAttenuation(sqrt(d2), light.range);

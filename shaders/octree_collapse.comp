@@ -9,5 +9,5 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 void main()
 {
     ivec3 node = ivec3(gl_GlobalInvocationID);
-    if (all(lessThan(node, size))) to.list[indexIn(node, size)] = joinedList(node, size);
+    if (all(lessThan(node, push.size))) push.to.list[indexIn(node, push.size)] = joinedList(node, push.size);
 }

@@ -8,5 +8,5 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 void main()
 {
     ivec3 voxel = ivec3(gl_GlobalInvocationID);
-    if (all(lessThan(voxel, size))) to.list[indexIn(voxel, size)] = filledList(voxel, size);
+    if (all(lessThan(voxel, push.size))) push.to.list[indexIn(voxel, push.size)] = filledList(voxel, push.size);
 }

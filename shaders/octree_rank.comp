@@ -11,7 +11,7 @@ shared uint mayBits[kMostCandidates / 32u];
 void main()
 {
     readSettings();
-    uint number = first + gl_WorkGroupID.x;
+    uint number = push.first + gl_WorkGroupID.x;
     uvec3 blocks = uvec3((build.count + kBlock - 1) / kBlock);
     ivec3 block = ivec3(number % blocks.x, number / blocks.x % blocks.y, number / blocks.x / blocks.y);
     uint thread = gl_LocalInvocationIndex;
@@ -20,17 +20,17 @@ void main()
     uint list = regionOf(kBlock * block) * build.candidates;
     uint threads = uint(kBlock * kBlock * kBlock);
     for (uint i = thread; i < build.candidates; i += threads)
-        if (mayBeSeen(inputs.candidates.candidate[list + i].x, block)) atomicOr(mayBits[i / 32u], 1u << (i % 32u));
+        if (mayBeSeen(push.settings.inputs.candidates.candidate[list + i].x, block)) atomicOr(mayBits[i / 32u], 1u << (i % 32u));
     barrier();
     for (uint i = thread; i < build.candidates; i += threads)
     {
         uint place = bitCount(mayBits[i / 32u] & ((1u << (i % 32u)) - 1u));
         for (uint word = 0u; word < i / 32u; ++word) place += bitCount(mayBits[word]);
         bool keeps = (mayBits[i / 32u] >> (i % 32u) & 1u) != 0u;
-        if (keeps) kept[place] = inputs.candidates.candidate[list + i];
+        if (keeps) kept[place] = push.settings.inputs.candidates.candidate[list + i];
         if (i + 1u == build.candidates) keptCount = place + uint(keeps);
     }
     barrier();
     ivec3 voxel = kBlock * block + ivec3(gl_LocalInvocationID);
-    if (all(lessThan(voxel, build.count))) to.list[indexIn(voxel, build.count)] = rankVoxel(voxel);
+    if (all(lessThan(voxel, build.count))) push.to.list[indexIn(voxel, build.count)] = rankVoxel(voxel);
 }

@@ -9,10 +9,10 @@ layout(local_size_x = 64) in;
 void main()
 {
     readSettings();
-    if (gl_GlobalInvocationID.x >= count) return;
-    uint number = first + gl_GlobalInvocationID.x;
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint number = push.first + gl_GlobalInvocationID.x;
     vec3 position, normal;
     if (!surfelOf(number, position, normal)) return;
     uint slot = surfelSlot(position, normal);
-    if (slot != kNoSurfel) atomicMin(surfels.key[slot], number * kKeyFactor);
+    if (slot != kNoSurfel) atomicMin(push.surfels.key[slot], number * kKeyFactor);
 }

@@ -3,15 +3,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
-#define SCONCE_TILE_CONSTANT 2
 #include "tiles.glsl"
 #include "sparse.glsl"
 
 // The pixels of a traced term that no ray was spent on (trace_glossy.comp marks them), from the traced ones about them. Reflections are
 // interpolated as light before the surface's tint, so that a metal's texture stays sharp. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 3) const uint kTerm = kTermGlossy;
-layout(set = 1, binding = 4, rgba32f) uniform image2D light; // in place: a pixel is either read or written
+layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
+layout(set = 1, binding = kFillLightBinding, rgba32f) uniform image2D light; // in place: a pixel is either read or written
 
 void main()
 {

@@ -13,7 +13,7 @@ layout(location = 1) flat out uint outMaterial;
 
 void main()
 {
-    gl_Position = clip * vec4(inPosition - centre, 1.0);
+    gl_Position = view.clip * vec4(inPosition - view.centre, 1.0);
 #ifdef MASKED
     outUv = inUv;
     outMaterial = inMaterial;

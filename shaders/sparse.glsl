@@ -1,5 +1,5 @@
 // Tracing one pixel of 2, 4, 8 or 16 and making the rest from those about it. After gbuffer_read.glsl.
-layout(constant_id = 5) const uint kEveryLog = 0u; // log2 of the pixels for each that is traced, 0..4
+layout(constant_id = kEveryLogId) const uint kEveryLog = 0u; // log2 of the pixels for each that is traced, 0..4
 
 // A regular lattice: one pixel of each cell, whose place changes from frame to frame, so that a filter over time meets all. For 2 and 8, whose
 // cells are twice as wide as high, every other row is shifted by half a cell.

@@ -11,12 +11,12 @@
 // "High Quality Temporal Supersampling", for the clamp to the neighbourhood). A smooth surface's light is followed where its reflection
 // moves: at the mirrored hit behind the surface, as far as the ray went. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 1) const uint kTerm = kTermGlossy;
-layout(set = 1, binding = 4, rgba32f) uniform image2D light;              // rgb; a: of the glossy term the distance of the hit, metres
-layout(set = 1, binding = 5, rgba32f) readonly uniform image2D before;    // rgb, a: frames blended
-layout(set = 1, binding = 6, rg32ui) readonly uniform uimage2D pointsBefore;
-layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D after;
-layout(set = 1, binding = 9, rg32ui) writeonly uniform uimage2D pointsAfter; // distance to the eye, metres, as bits; normal of 2 x 8 bits, term
+layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
+layout(set = 1, binding = kBlendLightBinding, rgba32f) uniform image2D light;              // rgb; a: of the glossy term the distance of the hit, metres
+layout(set = 1, binding = kBlendBeforeBinding, rgba32f) readonly uniform image2D before;    // rgb, a: frames blended
+layout(set = 1, binding = kBlendPointsBeforeBinding, rg32ui) readonly uniform uimage2D pointsBefore;
+layout(set = 1, binding = kBlendAfterBinding, rgba32f) writeonly uniform image2D after;
+layout(set = 1, binding = kBlendPointsAfterBinding, rg32ui) writeonly uniform uimage2D pointsAfter; // distance to the eye, metres, as bits; normal of 2 x 8 bits, term
 
 const float kLongest = 32.0;     // frames a history counts for: 97 % of a still picture is the past (the paper: 98 %)
 const float kLongestGlossy = 8.0; // of a sharp reflection: 88 % (the paper: 75 %)

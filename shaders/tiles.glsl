@@ -1,9 +1,6 @@
 // Which pixel an invocation works on: a pass runs on the tiles of a list, or over the whole picture. After gbuffer_read.glsl.
-#ifndef SCONCE_TILE_CONSTANT
-#define SCONCE_TILE_CONSTANT 0 // the constant id of kTiled; a pass with light_field.glsl has its own before
-#endif
-layout(constant_id = SCONCE_TILE_CONSTANT) const bool kTiled = true; // false: over the whole picture, every pixel computed, needed or not
-layout(scalar, set = 1, binding = 8) readonly buffer SconceTiles
+layout(constant_id = kTiledId) const bool kTiled = true; // false: over the whole picture, every pixel computed, needed or not
+layout(scalar, set = 1, binding = kTileBinding) readonly buffer SconceTiles
 {
     TileRuns runs[kListCount];
     TileRuns sparseRuns[kListCount]; // of passes whose workgroups take several tiles each

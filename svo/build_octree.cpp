@@ -46,9 +46,7 @@ struct Text
         return from[size_t(node.x) + size_t(size.x) * (size_t(node.y) + size_t(size.y) * size_t(node.z))];
     }
 
-#include "shaders/shared/texel.h"
-
-#include "shaders/shared/chart.h"
+#include "shaders/shared/pure_text.h"
 
 #include "shaders/shared/octree_rank.h"
 };

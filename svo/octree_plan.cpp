@@ -10,6 +10,7 @@
 
 #include "base/limits.h"
 #include "base/parallel.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -23,20 +24,6 @@ constexpr uint32_t kMostSamples = 1u << 23; // surface samples of all maps
 constexpr int kRegionsAlong = 16;           // regions along the longest side, about
 constexpr double kOutsideInfluence = 2.0 / 3.0;
 constexpr double kWeightAtOneVoxel = double(1 << 20); // times the largest gain of a rank, it fits 32 bits
-
-namespace maps_text
-{
-using namespace glm;
-struct Text // the shared chart and texel functions, in float
-{
-    using real = float;
-    using uint = uint32_t;
-    using vec2f = glm::vec2;
-#include "shaders/shared/texel.h"
-
-#include "shaders/shared/chart.h"
-};
-} // namespace maps_text
 
 /// Probes but those that stand exactly where an earlier one does: a list that named both would have one rank less.
 std::vector<uint32_t> distinctProbes(const ProbeMaps& maps)
@@ -60,7 +47,7 @@ void seenBounds(const ProbeMaps& maps, std::span<const uint32_t> distinct, vec3&
 {
     constexpr size_t kMost = 1u << 20; // samples of all probes, about
     constexpr double kCut = 0.01;
-    maps_text::Text text;
+    using Text = Pure<float>;
     const size_t size = maps.info.faceSize, probes = distinct.size();
     const size_t samples = std::clamp(size_t(std::sqrt(double(kMost) / double(6 * probes))), size_t(2), std::min<size_t>(24, size));
     std::array<std::vector<float>, 3> seen;
@@ -70,11 +57,11 @@ void seenBounds(const ProbeMaps& maps, std::span<const uint32_t> distinct, vec3&
                 for (size_t x = 0; x < samples; ++x)
                 {
                     const size_t px = (2 * x + 1) * size / (2 * samples), py = (2 * y + 1) * size / (2 * samples);
-                    const float q = text.halfToReal(
+                    const float q = Text::halfToReal(
                         maps.distance[probe * maps.info.wordsPerProbe + face * (maps.info.wordsPerProbe / 6) + py * size + px]);
                     if (q == 0.0f) continue;
                     const float u = 2.0f * (float(px) + 0.5f) / float(size) - 1.0f, v = 2.0f * (float(py) + 0.5f) / float(size) - 1.0f;
-                    const vec3 point = maps.probes[probe].centre + text.faceDirection(int(face), vec3(u, v, 1.0f) / q);
+                    const vec3 point = maps.probes[probe].centre + Text::faceDirection(int(face), vec3(u, v, 1.0f) / q);
                     for (int a = 0; a < 3; ++a) seen[a].push_back(point[a]);
                 }
     low = high = maps.probes[0].centre;

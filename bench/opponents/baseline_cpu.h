@@ -1,12 +1,12 @@
 #pragma once
 
 #include "runtime/field/tracer_cpu.h"
-#include "shaders/shared/baseline.h"
+#include "shaders/opponents/baseline.h"
 
 namespace sconce::twin
 {
 
-/// The opponents' shader text on the CPU; `kind` is one of shaders/shared/baseline.h. The field is one that baselineField() made.
+/// The opponents' shader text on the CPU; `kind` is one of shaders/opponents/baseline.h. The field is one that baselineField() made.
 /// Refers to the field: keep that alive. Safe from many threads.
 template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<Real>
 {
@@ -21,6 +21,7 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     using TraceResult = typename Base::TraceResult;
     using Base::addTried;
     using Base::answer;
+    using Base::canTrace;
     using Base::directionFromOctahedral;
     using Base::distanceWord;
     using Base::field;
@@ -28,9 +29,12 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     using Base::halfToReal;
     using Base::keepLastTried;
     using Base::kHit;
+    using Base::kLookAheads;
     using Base::kMaxTried;
     using Base::kMiss;
     using Base::kNoProbe;
+    using Base::kProgress;
+    using Base::lookAhead;
     using Base::noneTried;
     using Base::wasTried;
     using TriedProbes = typename Base::TriedProbes;
@@ -49,11 +53,11 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     static constexpr uint kBaselineB0PlusOctree = gpu::kBaselineB0PlusOctree;
     static constexpr uint kBaselineWang = gpu::kBaselineWang;
 
-#include "shaders/shared/baseline_b0.h"
+#include "shaders/opponents/baseline_b0.h"
 
-#include "shaders/shared/baseline_wang.h"
+#include "shaders/opponents/baseline_wang.h"
 
-#include "shaders/shared/baseline_trace.h"
+#include "shaders/opponents/baseline_trace.h"
 };
 
 } // namespace sconce::twin

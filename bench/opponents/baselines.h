@@ -7,12 +7,12 @@
 #include "base/result.h"
 #include "runtime/field/field_data.h"
 #include "runtime/vulkan/pipeline.h"
-#include "shaders/shared/baseline.h"
+#include "shaders/opponents/baseline.h"
 
 namespace sconce
 {
 
-/// The opponents: tracers that the bench runs in place of ours on the same maps, rays and outputs (shaders/shared/baseline_trace.h).
+/// The opponents: tracers that the bench runs in place of ours on the same maps, rays and outputs (shaders/opponents/baseline_trace.h).
 enum class Baseline : uint32_t
 {
     b0 = gpu::kBaselineB0,                     // McGuire et al. 2017 as published

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "runtime/field/face_chain_text.h"
 #include "runtime/field/field_space.h"
 #include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -76,7 +76,7 @@ Result<FieldData> octahedralField(const FieldData& faces, uint32_t size)
         return Error{ErrorCode::badArgument,
                      "Our tracer's octahedral maps need a multiple of 64 texels a side, not " + std::to_string(size) + "."};
     const uint32_t topLevel = coarsestLevel(size);
-    FieldData made = octahedralCopy(faces, size, topLevel, chain_text::Text().chainWords(size, int(topLevel)));
+    FieldData made = octahedralCopy(faces, size, topLevel, Pure<float>::chainWords(size, int(topLevel)));
     const uint32_t faceSize = faces.info.faceSize;
     parallelFor(faces.probes.size(),
                 [&](size_t probe)

@@ -11,7 +11,7 @@ namespace sconce
 /// resampled level by level. The paper doesn't say how: here an octahedral texel of level l covers every texel of level l of the faces that
 /// its own solid angle touches, so that min <= every distance in it <= max, rounding to 16 bits included. Radiance, irradiance, headers and
 /// octree are the faces' own. N must be a power of two, at least 16.
-/// Words: shaders/shared/baseline_wang.h. Errors: badInput (the size). Cost: 8 N^2 texel footprints a probe, all cores.
+/// Words: shaders/opponents/baseline_wang.h. Errors: badInput (the size). Cost: 8 N^2 texel footprints a probe, all cores.
 Result<FieldData> wangField(const FieldData& faces);
 
 } // namespace sconce

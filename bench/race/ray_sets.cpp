@@ -39,7 +39,7 @@ vec3 uniformDirection(vec2 u)
 {
     const float z = 1.0f - 2.0f * u.x;
     const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
-    return {r * std::cos(2.0f * SCONCE_BRDF_PI * u.y), r * std::sin(2.0f * SCONCE_BRDF_PI * u.y), z};
+    return {r * std::cos(2.0f * kBrdfPi * u.y), r * std::sin(2.0f * kBrdfPi * u.y), z};
 }
 
 Ray viewRay(std::span<const Camera> cameras, std::span<const vec3> points, Random& random)

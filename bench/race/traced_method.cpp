@@ -12,10 +12,10 @@
 #include "base/random.h"
 #include "bench/opponents/octahedral_field.h"
 #include "bench/race/distance_format.h"
-#include "runtime/field/face_chain_text.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/quality.h"
 #include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -172,7 +172,7 @@ double TracedMethod::traceMebibytes() const
 {
     uint32_t words = field.info.wordsPerProbe;
     if (!how.opponent && how.quality.trace.farBounds == 0) // they are there, and not read
-        words = (how.octahedral != 0 ? 1 : 6) * chain_text::Text().chainNearWords(field.info.faceSize, int(field.info.topLevel));
+        words = (how.octahedral != 0 ? 1 : 6) * Pure<float>::chainNearWords(field.info.faceSize, int(field.info.topLevel));
     const double saved = how.opponent ? 0.0 : double(bytesSaved(field, how.distanceBits)) / double(field.info.probeCount);
     return (double(words) * sizeof(uint32_t) - saved) / kMebibyte;
 }

@@ -68,7 +68,7 @@ BrdfValue PathTracer::reflect(const ShadingPoint& point, vec3 view, vec3 light) 
 float PathTracer::scatterPdf(const ShadingPoint& point, vec3 view, vec3 light) const
 {
     const float share = specularShare(point.surface, glm::dot(point.normal, view));
-    const float diffuse = std::max(glm::dot(point.normal, light), 0.0f) / SCONCE_BRDF_PI;
+    const float diffuse = std::max(glm::dot(point.normal, light), 0.0f) / kBrdfPi;
     if (isMirror(point.surface.roughness)) return (1.0f - share) * diffuse;
     return share * visibleNormalPdf(point.normal, view, light, ggxAlpha(point.surface.roughness)) + (1.0f - share) * diffuse;
 }

@@ -16,6 +16,7 @@
 #include "runtime/field/field_space.h"
 #include "runtime/field/octree_builder.h"
 #include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -68,8 +69,7 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
 /// octree of an octahedral field are made from.
 void halveFaces(std::span<const uint32_t> faces, uint32_t size, const gpu::LightFieldInfo& half, uint32_t* out)
 {
-    static const FieldData none;
-    twin::LightFieldTwin<float> text(none, {});
+    using Text = Pure<float>;
     for (uint32_t face = 0; face < 6; ++face)
     {
         uint32_t* words = out + size_t(face) * (half.wordsPerProbe / 6);
@@ -77,10 +77,10 @@ void halveFaces(std::span<const uint32_t> faces, uint32_t size, const gpu::Light
             for (uint32_t x = 0; x < half.faceSize; ++x)
             {
                 const uint32_t word = faces[(size_t(face) * size + 2 * y) * size + 2 * x];
-                const float gx = text.unpackGradient(word >> 16), gy = text.unpackGradient(word >> 24);
+                const float gx = Text::unpackGradient(word >> 16), gy = Text::unpackGradient(word >> 24);
                 const float change = std::max(1.0f + 0.5f * gx + 0.5f * gy, 0.5f);
                 words[y * half.faceSize + x] =
-                    (word & 0xffffu) ? text.packTexel(text.halfToReal(word) * change, 2.0f * gx / change, 2.0f * gy / change) : 0;
+                    (word & 0xffffu) ? Text::packTexel(Text::halfToReal(word) * change, 2.0f * gx / change, 2.0f * gy / change) : 0;
             }
         buildChain(words, half.faceSize);
     }
@@ -99,12 +99,11 @@ double meanRadiance(const FieldData& field)
 {
     const uint32_t n = field.info.faceSize, faces = field.info.chart == gpu::kChartCube ? 6 : 1;
     std::vector<double> solidAngle(size_t(n) * n), sums(field.probes.size());
-    twin::LightFieldTwin<float> chart(field, {});
     double all = 0.0;
     for (uint32_t i = 0; i < n * n; ++i)
     {
         const glm::vec2 uv = (glm::vec2(i % n, i / n) + 0.5f) / float(n);
-        const glm::vec3 d = faces == 6 ? glm::normalize(glm::vec3(2.0f * uv - 1.0f, 1.0f)) : chart.directionFromOctahedral(uv);
+        const glm::vec3 d = faces == 6 ? glm::normalize(glm::vec3(2.0f * uv - 1.0f, 1.0f)) : Pure<float>::directionFromOctahedral(uv);
         const double off = faces == 6 ? d.z : std::abs(d.x) + std::abs(d.y) + std::abs(d.z); // 1 / distance of the chart's point
         solidAngle[i] = off * off * off;
         all += solidAngle[i] * faces;

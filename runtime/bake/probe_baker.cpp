@@ -91,12 +91,13 @@ Status ProbeBaker::createBuffers()
         if (!buffer) return buffer.error();
         need.buffer = std::move(*buffer);
     }
-    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+    const DescriptorSet::Binding bindings[] = {{gpu::kBakeSurfaceBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                               {gpu::kBakeDepthBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     images = std::move(*set);
-    images.write(0, surfaceImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    images.write(1, depthImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    images.write(gpu::kBakeSurfaceBinding, surfaceImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    images.write(gpu::kBakeDepthBinding, depthImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     return success();
 }
 
@@ -107,7 +108,7 @@ Status ProbeBaker::createPipelines()
     Pipeline::Graphics desc;
     desc.vertex = bake_gbuffer_vert;
     desc.sets = sceneSet;
-    desc.pushBytes = sizeof(SceneView);
+    desc.pushBytes = sizeof(gpu::SceneView);
     desc.vertexBindings = SceneMesh::vertexBindings();
     desc.vertexAttributes = SceneMesh::vertexAttributes();
     desc.colorFormats = formats;
@@ -133,17 +134,17 @@ Status ProbeBaker::createPipelines()
                              Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
                              Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
     {
-        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(Push));
+        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush));
         if (!made) return made.error();
         pass.pipeline = std::move(*made);
     }
     return success();
 }
 
-ProbeBaker::Push ProbeBaker::pushFor(vec3 centre) const
+gpu::BakePush ProbeBaker::pushFor(vec3 centre) const
 {
     const VkDeviceAddress base = light.address(), part = VkDeviceAddress(radianceWords) * 4;
-    Push push{};
+    gpu::BakePush push{};
     push.words = words.address();
     push.radiance = base;
     push.surface = base + part;
@@ -159,7 +160,7 @@ ProbeBaker::Push ProbeBaker::pushFor(vec3 centre) const
     return push;
 }
 
-void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const Push& push,
+void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const gpu::BakePush& push,
                           uint32_t width, uint32_t layers)
 {
     pipeline.bind(cmd, sets);
@@ -203,7 +204,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
         const VkRect2D scissor{{0, int32_t(n) * face}, {n, n}};
         gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
         gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
-        const SceneView view = faceView(centre, face, kProbeNear * info.diagonal);
+        const gpu::SceneView view = faceView(centre, face, kProbeNear * info.diagonal);
         scene.mesh().leaveOutBackFaces(cmd, view);
         scene.mesh().cull(view, draws);
         for (const auto& [pipeline, runs] : {std::pair(&opaque, &draws.opaque), std::pair(&masked, &draws.masked)})
@@ -229,7 +230,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
 void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 {
     const uint32_t n = info.faceSize;
-    Push push = pushFor(centre);
+    gpu::BakePush push = pushFor(centre);
     if (octahedral)
     {
         push.words = faceWords.address();
@@ -266,7 +267,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 
 void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
 {
-    Push push = pushFor(vec3(0.0f));
+    gpu::BakePush push = pushFor(vec3(0.0f));
     push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
     while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
     push.extra = cells.address();
@@ -323,7 +324,7 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
-        auto made = Pipeline::compute(gpu, bake_bounce_comp, sets, sizeof(Push), field.constants());
+        auto made = Pipeline::compute(gpu, bake_bounce_comp, sets, sizeof(gpu::BakePush), shaderConstants(field));
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }

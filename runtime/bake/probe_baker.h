@@ -6,6 +6,7 @@
 
 #include "runtime/field/light_field.h"
 #include "runtime/scene/device_scene.h"
+#include "shaders/shared/bake_passes.h"
 
 namespace sconce
 {
@@ -37,18 +38,6 @@ public:
     Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target);
 
 private:
-    struct Push // as shaders/bake_probe.glsl
-    {
-        VkDeviceAddress words, radiance, surface, extra;
-        vec3 centre;
-        float nearPlane;
-        uint32_t size, faceWords, chart, level;
-        vec3 sky;
-        float skyDistance;
-        VkDeviceAddress emitted;
-    };
-    static_assert(sizeof(Push) == 88);
-
     ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo)
         : gpu(device), scene(deviceScene), info(fieldInfo)
     {
@@ -58,10 +47,10 @@ private:
     void recordFaces(VkCommandBuffer cmd, vec3 centre);
     void recordMaps(VkCommandBuffer cmd, vec3 centre);
     void recordGather(VkCommandBuffer cmd, bool moments);
-    void dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const Push& push, uint32_t width,
-                  uint32_t layers);
+    void dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const gpu::BakePush& push,
+                  uint32_t width, uint32_t layers);
     void copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from);
-    Push pushFor(vec3 centre) const;
+    gpu::BakePush pushFor(vec3 centre) const;
 
     Gpu& gpu;
     const DeviceScene& scene;

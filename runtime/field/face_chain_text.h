@@ -12,7 +12,7 @@ namespace sconce::chain_text
 {
 using namespace glm; // the shared text calls GLSL's functions by their plain names
 
-/// The shared text that lays out and builds a face's chain, in float; `words` are those of the probe or face it is asked about.
+/// The shared text that builds a face's chain, in float; `words` are those of the face it is asked about. Where they lie: Pure (pure.h).
 struct Text
 {
     using real = float;
@@ -20,10 +20,9 @@ struct Text
     using vec2f = glm::vec2;
     const uint32_t* words = nullptr;
     uint32_t chainWord(uint32_t index) const { return words[index]; }
-#include "shaders/shared/texel.h"
-#define SCONCE_BUILDS_CHAINS
-#include "shaders/shared/face_chain.h"
-#undef SCONCE_BUILDS_CHAINS
+#include "shaders/shared/pure_text.h"
+
+#include "shaders/shared/face_chain_build.h"
 };
 
 } // namespace sconce::chain_text

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "runtime/field/face_chain_text.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -27,14 +27,13 @@ FieldBytes bytesByPart(const FieldData& field)
 uint32_t coarsestLevel(uint32_t faceSize)
 {
     assert(faceSize > 0);
-    return uint32_t(chain_text::Text().chainTop(faceSize));
+    return uint32_t(Pure<float>::chainTop(faceSize));
 }
 
 uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size)
 {
     if (chart == gpu::kChartOctahedral) return size * size + (size / gpu::kLowFactor) * (size / gpu::kLowFactor);
-    chain_text::Text text;
-    return 6 * text.chainWords(size, text.chainTop(size));
+    return 6 * Pure<float>::chainWords(size, coarsestLevel(size));
 }
 
 uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size)

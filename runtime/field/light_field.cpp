@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "runtime/vulkan/nan_scan.h"
+#include "shaders/shared/field_passes.h"
 
 #include "spirv/trace_rays_comp.h"
 
@@ -13,17 +14,6 @@ namespace sconce
 {
 namespace
 {
-
-struct FieldBlock // as shaders/light_field.glsl declares it
-{
-    gpu::LightFieldInfo info;
-    gpu::TraceQuality quality;
-    VkDeviceAddress distance;
-    VkDeviceAddress radiance;
-    VkDeviceAddress irradiance;
-    VkDeviceAddress prefiltered;
-};
-static_assert(sizeof(FieldBlock) == 256);
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
@@ -119,7 +109,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
         gpu.makeTexelBuffer<uint32_t>(made.patchesHeld ? field.patches : noPatches, VK_FORMAT_R32G32B32A32_UINT, "probe patches");
     if (!patches) return patches.error();
     made.patches = std::move(*patches);
-    auto block = gpu.makeBuffer(sizeof(FieldBlock), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "light field block");
+    auto block = gpu.makeBuffer(sizeof(gpu::FieldBlock), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "light field block");
     if (!block) return block.error();
     made.block = std::move(*block);
     Octree empty; // a field of the octahedral baseline has none; the binding still wants an image
@@ -130,17 +120,17 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.octree = std::move(*octree);
     made.bytes += made.probes.size() + made.patches.size() + made.block.size() + field.octree.bytes();
 
-    const DescriptorSet::Binding bindings[] = {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                                               {1, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
-                                               {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                               {3, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+    const DescriptorSet::Binding bindings[] = {{gpu::kFieldBlockBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                                               {gpu::kFieldProbesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldOctreeBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                               {gpu::kFieldPatchesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
-    made.set.write(0, made.block);
-    made.set.write(1, made.probes);
-    made.set.write(3, made.patches);
-    made.set.write(2, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    made.set.write(gpu::kFieldBlockBinding, made.block);
+    made.set.write(gpu::kFieldProbesBinding, made.probes);
+    made.set.write(gpu::kFieldPatchesBinding, made.patches);
+    made.set.write(gpu::kFieldOctreeBinding, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     if (auto status = made.setQuality(quality); !status) return status.error();
     return LightField(state);
 }
@@ -149,7 +139,7 @@ Status LightField::State::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const FieldBlock values{info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
+    const gpu::FieldBlock values{info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 
@@ -167,7 +157,17 @@ VkDescriptorSet LightField::descriptorSet() const
 
 std::array<uint32_t, 2> LightField::constants() const
 {
-    return {(shared->readsFarBounds ? 1u : 0u) | (shared->info.chart == gpu::kChartOctahedral ? 2u : 0u), shared->radianceHeld ? 1u : 0u};
+    std::array<uint32_t, 2> values{};
+    values[gpu::kFieldFlagsId] =
+        (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u);
+    values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
+    return values;
+}
+
+std::array<ShaderConstant, 2> shaderConstants(const LightField& field)
+{
+    const std::array<uint32_t, 2> values = field.constants();
+    return {{{0, values[0]}, {1, values[1]}}};
 }
 
 const gpu::LightFieldInfo& LightField::info() const
@@ -222,7 +222,7 @@ RayTracer::RayTracer(std::shared_ptr<State> made) : shared(std::move(made)) {}
 Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, Spirv shader)
 {
     const VkDescriptorSetLayout layouts[] = {field.layout()};
-    const auto constants = field.constants();
+    const auto constants = shaderConstants(field);
     auto pipeline =
         Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(gpu::TraceRaysPush), constants);
     if (!pipeline) return pipeline.error();

@@ -27,6 +27,9 @@ struct LightField::State
 /// Uploads a baked field. Errors: badArgument (no probes, knobs out of range: named), outOfMemory (names the bytes), deviceFailure.
 Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality = {});
 
+/// LightField::constants() as pipelines take them.
+std::array<ShaderConstant, 2> shaderConstants(const LightField& field);
+
 /// What stands behind the handle RayTracer.
 struct RayTracer::State
 {

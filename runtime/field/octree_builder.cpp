@@ -22,22 +22,6 @@ using glm::ivec3;
 constexpr uint64_t kJudgesASubmit = 1u << 26; // visibility tests: about a second of software Vulkan on two cores at most
 constexpr uint32_t kSamplesASubmit = 1u << 21;
 
-struct Inputs // as shaders/octree_build.glsl declares it
-{
-    gpu::OctreeBuild build;
-    VkDeviceAddress distance, probes, candidates;
-};
-static_assert(sizeof(Inputs) == 112);
-
-struct Push
-{
-    VkDeviceAddress inputs, surfels, from, to;
-    uint32_t first, count;
-    ivec3 size;
-    uint32_t unused = 0; // to a multiple of 8
-};
-static_assert(sizeof(Push) == 56);
-
 class Builder
 {
 public:
@@ -50,7 +34,7 @@ public:
                                              {&fillPass, octree_fill_comp},
                                              {&collapsePass, octree_collapse_comp}})
         {
-            auto compiled = Pipeline::compute(gpu, code, {}, sizeof(Push));
+            auto compiled = Pipeline::compute(gpu, code, {}, sizeof(gpu::OctreePush));
             if (!compiled) return compiled.error();
             *pipeline = std::move(*compiled);
         }
@@ -63,8 +47,8 @@ public:
         uploaded = gpu.makeBufferWith<glm::uvec2>(plan.candidates, 0, "The octree's candidates");
         if (!uploaded) return uploaded.error();
         candidates = std::move(*uploaded);
-        const Inputs values[] = {{plan.build, distance.address(), probes.address(), candidates.address()}};
-        uploaded = gpu.makeBufferWith<Inputs>(values, 0, "The octree's settings");
+        const gpu::OctreeInputs values[] = {{plan.build, distance.address(), probes.address(), candidates.address()}};
+        uploaded = gpu.makeBufferWith<gpu::OctreeInputs>(values, 0, "The octree's settings");
         if (!uploaded) return uploaded.error();
         inputs = std::move(*uploaded);
         auto made =
@@ -142,7 +126,8 @@ private:
                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
                 pipeline.bind(cmd);
-                pipeline.push(cmd, Push{inputs.address(), surfels.address(), lists[1].address(), lists[0].address(), first, count, size});
+                pipeline.push(cmd, gpu::OctreePush{inputs.address(), surfels.address(), lists[1].address(), lists[0].address(), first,
+                                                   count, size, 0});
                 gpu.vk.CmdDispatch(cmd, groups.x, groups.y, groups.z);
             });
     }

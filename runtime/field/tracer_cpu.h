@@ -41,11 +41,7 @@ template <class Real> struct LightFieldTwin
     {
     }
 
-#include "shaders/shared/texel.h"
-
-#include "shaders/shared/chart.h"
-
-#include "shaders/shared/color.h"
+#include "shaders/shared/pure_text.h"
 
     const gpu::LightFieldInfo& field;
     TraceQuality quality;
@@ -97,8 +93,6 @@ template <class Real> struct LightFieldTwin
     }
 
 #include "shaders/shared/octree_descent.h"
-
-#include "shaders/shared/face_chain.h"
 
 #include "shaders/shared/ray_state.h"
 

@@ -10,24 +10,19 @@ namespace sconce
 namespace
 {
 
-struct DenoisePush // as shaders/denoise.comp
-{
-    int stride;
-    int followRoughness;
-};
 constexpr int kStrides[] = {1, 2, 4, 8}; // pixels; an even number of steps ends where it began
 
 } // namespace
 
 Result<DescriptorSet> makeFrameSet(Gpu& gpu, const Buffer& frame, std::span<const DescriptorSet::Binding> passBindings)
 {
-    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {1, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {2, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                    {3, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+    std::vector<DescriptorSet::Binding> bindings = {{gpu::kDepthBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {gpu::kNormalRoughnessBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {gpu::kBaseColorMetallicBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                    {gpu::kFrameBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
     bindings.insert(bindings.end(), passBindings.begin(), passBindings.end());
     auto set = DescriptorSet::create(gpu, bindings);
-    if (set) set->write(3, frame);
+    if (set) set->write(gpu::kFrameBinding, frame);
     return set;
 }
 
@@ -59,20 +54,21 @@ Result<GpuImage> makeLightImage(Gpu& gpu, VkFormat format, uint32_t width, uint3
 
 void writeInputs(DescriptorSet& set, const FrameInputs& inputs)
 {
-    set.write(0, inputs.depth, inputs.layout);
-    set.write(1, inputs.normalRoughness, inputs.layout);
-    set.write(2, inputs.baseColorMetallic, inputs.layout);
+    set.write(gpu::kDepthBinding, inputs.depth, inputs.layout);
+    set.write(gpu::kNormalRoughnessBinding, inputs.normalRoughness, inputs.layout);
+    set.write(gpu::kBaseColorMetallicBinding, inputs.baseColorMetallic, inputs.layout);
 }
 
 Result<DescriptorSet> Denoiser::makeStep(const Buffer& frame, const GpuImage& from, const GpuImage& to)
 {
-    const DescriptorSet::Binding bindings[] = {
-        {4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}, {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    const DescriptorSet::Binding bindings[] = {{gpu::kFilterFromBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {gpu::kFilterToBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     auto set = makeFrameSet(*gpu, frame, bindings);
     if (!set) return set.error();
-    set->write(4, from.view(), VK_IMAGE_LAYOUT_GENERAL);
-    set->write(5, to.view(), VK_IMAGE_LAYOUT_GENERAL);
-    set->write(kTileBinding, desc.tiles->buffer());
+    set->write(gpu::kFilterFromBinding, from.view(), VK_IMAGE_LAYOUT_GENERAL);
+    set->write(gpu::kFilterToBinding, to.view(), VK_IMAGE_LAYOUT_GENERAL);
+    set->write(gpu::kTileBinding, desc.tiles->buffer());
     return set;
 }
 
@@ -94,18 +90,21 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
     for (uint32_t i = 0; i < 2; ++i)
     {
         const History &own = histories[i], &other = histories[1 - i];
-        const std::pair<uint32_t, const GpuImage*> images[] = {
-            {4, &light}, {5, &other.light}, {6, &other.points}, {7, &own.light}, {9, &own.points}};
-        std::vector<DescriptorSet::Binding> bindings = {{kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+        const std::pair<uint32_t, const GpuImage*> images[] = {{gpu::kBlendLightBinding, &light},
+                                                               {gpu::kBlendBeforeBinding, &other.light},
+                                                               {gpu::kBlendPointsBeforeBinding, &other.points},
+                                                               {gpu::kBlendAfterBinding, &own.light},
+                                                               {gpu::kBlendPointsAfterBinding, &own.points}};
+        std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
         for (const auto& [binding, image] : images) bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
         auto set = makeFrameSet(*gpu, frame, bindings);
         if (!set) return set.error();
         for (const auto& [binding, image] : images) set->write(binding, image->view(), VK_IMAGE_LAYOUT_GENERAL);
-        set->write(kTileBinding, desc.tiles->buffer());
+        set->write(gpu::kTileBinding, desc.tiles->buffer());
         histories[i].blend = std::move(*set);
     }
     const VkDescriptorSetLayout layouts[] = {desc.firstSet, histories[0].blend.layout()};
-    const uint32_t constants[] = {desc.tiles->constant(), desc.term};
+    const ShaderConstant constants[] = {desc.tiles->constant(), {gpu::kTermId, desc.term}};
     auto built = Pipeline::compute(*gpu, temporal_comp, layouts, 0, constants);
     if (!built) return built.error();
     temporal = std::move(*built);
@@ -126,8 +125,8 @@ Result<Denoiser> Denoiser::create(Gpu& gpu, const Desc& desc, const Buffer& fram
     if (desc.temporal)
         if (auto status = made.makeHistory(frame, light, scratch); !status) return status.error();
     const VkDescriptorSetLayout layouts[] = {desc.firstSet, made.forth.layout()};
-    const uint32_t constants[] = {desc.tiles->constant(), desc.term, desc.temporal ? 1u : 0u};
-    auto built = Pipeline::compute(gpu, denoise_comp, layouts, sizeof(DenoisePush), constants);
+    const ShaderConstant constants[] = {desc.tiles->constant(), {gpu::kTermId, desc.term}, {gpu::kBlendedId, desc.temporal ? 1u : 0u}};
+    auto built = Pipeline::compute(gpu, denoise_comp, layouts, sizeof(gpu::DenoisePush), constants);
     if (!built) return built.error();
     made.pipeline = std::move(*built);
     return made;
@@ -173,7 +172,7 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         const VkDescriptorSet sets[] = {firstSet, step->handle()};
         pipeline.bind(cmd, sets);
-        pipeline.push(cmd, DenoisePush{stride, desc.followRoughness ? 1 : 0});
+        pipeline.push(cmd, gpu::DenoisePush{stride, desc.followRoughness ? 1 : 0});
         desc.tiles->dispatch(cmd, desc.term);
         step = step == &back ? &forth : &back;
     }

@@ -12,7 +12,6 @@ namespace
 {
 
 constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr uint32_t kTableBinding = 6; // gather_light.comp: the environment BRDF
 
 std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc)
 {
@@ -44,26 +43,23 @@ Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const 
     return success();
 }
 
-/// @param images     of bindings 4 and 5
-/// @param constants  after the field's and whether the pass runs on tiles
-Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
-                                      std::initializer_list<uint32_t> constants)
+/// @param images     each with its binding; what a pass lacks of them is bound to something that is there
+/// @param constants  besides the field's and whether the pass runs on tiles
+Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
+                                      std::initializer_list<ShaderConstant> constants)
 {
-    const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                                               {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                                               {kTableBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                               {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                                    {gpu::kEnvironmentBrdfBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    for (const Bound& bound : images) bindings.push_back({bound.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
     auto made = makeFrameSet(*gpu, frame, bindings);
     if (!made) return made.error();
     set = std::move(*made);
-    uint32_t binding = 4;
-    for (const GpuImage* image : images) set.write(binding++, image->view(), VK_IMAGE_LAYOUT_GENERAL);
-    set.write(kTableBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
-    set.write(kTileBinding, tileList->buffer());
-    const auto fieldConstants = field.constants();
-    std::vector<uint32_t> values(fieldConstants.begin(), fieldConstants.end());
+    for (const Bound& bound : images) set.write(bound.binding, bound.image->view(), VK_IMAGE_LAYOUT_GENERAL);
+    set.write(gpu::kEnvironmentBrdfBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
+    set.write(gpu::kTileBinding, tileList->buffer());
+    std::vector<ShaderConstant> values(constants);
+    for (const ShaderConstant& ofField : shaderConstants(field)) values.push_back(ofField);
     values.push_back(tileList->constant());
-    values.insert(values.end(), constants);
     const VkDescriptorSetLayout layouts[] = {field.layout(), set.layout()};
     auto built = Pipeline::compute(*gpu, shader, layouts, 0, values);
     if (!built) return built.error();
@@ -89,14 +85,16 @@ Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline&
     if (counts && !countImage)
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = glossyShader.empty() ? Spirv(trace_glossy_comp) : glossyShader;
-    return makePass(pipeline, set, shader, {&image, counts ? &countImage : &noCounts},
-                    {term, counts ? 1u : 0u, term == gpu::kTermMirror ? 0u : everyLog()});
+    return makePass(
+        pipeline, set, shader, {{gpu::kTraceLightBinding, &image}, {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts}},
+        {{gpu::kTermId, term}, {gpu::kCountId, counts ? 1u : 0u}, {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()}});
 }
 
 Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
     if (desc.traceEvery == 1) return success();
-    return makePass(pipeline, set, reconstruct_comp, {&image, &image}, {term, 0u, everyLog()});
+    return makePass(pipeline, set, reconstruct_comp, {{gpu::kFillLightBinding, &image}},
+                    {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}});
 }
 
 Status IndirectLight::State::makeGather()
@@ -114,8 +112,11 @@ Status IndirectLight::State::makeGather()
     }
     const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
-    return makePass(gatherPass, gatherSet, gather_light_comp, {&diffuse, &rough},
-                    {gathersDiffuse() ? 1u : 0u, effects.rough ? 1u : 0u, gatherList(), effects.patches ? 1u : 0u});
+    return makePass(gatherPass, gatherSet, gather_light_comp, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
+                    {{gpu::kGatherDiffuseId, gathersDiffuse() ? 1u : 0u},
+                     {gpu::kGatherRoughId, effects.rough ? 1u : 0u},
+                     {gpu::kListId, gatherList()},
+                     {gpu::kByPatchesId, effects.patches ? 1u : 0u}});
 }
 
 IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, Spirv shader)

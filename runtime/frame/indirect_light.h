@@ -33,8 +33,13 @@ struct IndirectLight::State
 
 private:
     Status makeImage(GpuImage& target, VkFormat format, const char* what);
-    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<const GpuImage*> images,
-                    std::initializer_list<uint32_t> constants);
+    struct Bound
+    {
+        uint32_t binding;
+        const GpuImage* image;
+    };
+    Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
+                    std::initializer_list<ShaderConstant> constants);
     Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();

@@ -23,13 +23,14 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& des
         gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
     made.lists = std::move(*lists);
-    const DescriptorSet::Binding bindings[] = {{kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    const DescriptorSet::Binding bindings[] = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     auto set = makeFrameSet(gpu, frame, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
-    made.set.write(kTileBinding, made.lists);
+    made.set.write(gpu::kTileBinding, made.lists);
     const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
-    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, std::span(&desc.everyLog, 1));
+    const ShaderConstant constants[] = {{gpu::kEveryLogId, desc.everyLog}};
+    auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, constants);
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
     return made;

@@ -2,6 +2,7 @@
 
 #include "runtime/frame/frame_inputs.h"
 #include "shaders/shared/frame.h"
+#include "shaders/shared/frame_passes.h"
 
 namespace sconce
 {
@@ -26,9 +27,9 @@ public:
     /// Dispatches the bound pass over a list's tiles, or over the whole picture.
     /// @param everyLog  log2 of the tiles that a workgroup takes: 0, or Desc's
     void dispatch(VkCommandBuffer cmd, uint32_t list, uint32_t everyLog = 0) const;
-    uint32_t constant() const { return desc.tiled ? 1 : 0; } // kTiled of shaders/tiles.glsl
+    ShaderConstant constant() const { return {gpu::kTiledId, desc.tiled ? 1u : 0u}; } // of passes that include shaders/tiles.glsl
 
-    const Buffer& buffer() const { return lists; } // binding kTileBinding of shaders/tiles.glsl
+    const Buffer& buffer() const { return lists; } // their gpu::kTileBinding
     explicit operator bool() const { return bool(pipeline); }
 
 private:
@@ -39,7 +40,5 @@ private:
     DescriptorSet set;
     Pipeline pipeline;
 };
-
-inline constexpr uint32_t kTileBinding = 8;
 
 } // namespace sconce

@@ -54,7 +54,7 @@ struct DepthPipelines
         const VkDescriptorSetLayout sets[] = {sceneSet};
         Pipeline::Graphics desc;
         desc.vertex = shadow_vert;
-        desc.pushBytes = sizeof(SceneView);
+        desc.pushBytes = sizeof(gpu::SceneView);
         desc.vertexBindings = SceneMesh::vertexBindings();
         desc.vertexAttributes = SceneMesh::vertexAttributes().first(1);
         desc.depthFormat = format;
@@ -72,7 +72,7 @@ struct DepthPipelines
 };
 
 void renderDepth(Gpu& gpu, VkCommandBuffer cmd, const DepthPipelines& pipelines, const SceneMesh& mesh, VkDescriptorSet sceneSet,
-                 const GpuImage& maps, uint32_t layer, const SceneView& view, SceneDraws& draws)
+                 const GpuImage& maps, uint32_t layer, const gpu::SceneView& view, SceneDraws& draws)
 {
     VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     depth.imageView = maps.layerView(layer);
@@ -176,15 +176,20 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     if (!sampler) return sampler.error();
     made.textureSampler = std::move(*sampler);
 
-    std::vector<DescriptorSet::Binding> bindings = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-    for (uint32_t b : {1u, 2u, 4u, 5u, 6u, 7u}) bindings.push_back({b, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
+    std::vector<DescriptorSet::Binding> bindings = {{gpu::kMaterialsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                                    {gpu::kLightsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    for (uint32_t textures : {gpu::kColorTexturesBinding, gpu::kDataTexturesBinding, gpu::kSunShadowsBinding, gpu::kSkyShadowsBinding,
+                              gpu::kPointShadowsBinding, gpu::kEmitterShadowsBinding})
+        bindings.push_back({textures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
-    made.set.write(0, made.materials);
-    made.set.write(1, made.color.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, made.textureSampler.handle());
-    made.set.write(2, made.data.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, made.textureSampler.handle());
-    made.set.write(3, made.lightBuffer);
+    made.set.write(gpu::kMaterialsBinding, made.materials);
+    made.set.write(gpu::kColorTexturesBinding, made.color.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                   made.textureSampler.handle());
+    made.set.write(gpu::kDataTexturesBinding, made.data.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                   made.textureSampler.handle());
+    made.set.write(gpu::kLightsBinding, made.lightBuffer);
     if (auto status = made.makeShadowMaps(gpu, progress); !status) return status.error();
     gpu.releaseStaging();
     made.bytes = gpu.memory().used() - before;
@@ -202,11 +207,14 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         const Sampler& sampler;
         const char* what;
     };
-    const Kind kinds[] = {
-        {sunMaps, sizes.sunShadow, lightList.sunLayers, 4, VK_FORMAT_D32_SFLOAT, smoothCompare, "The suns' shadow maps"},
-        {skyMaps, sizes.skyShadow, lightList.skyLayers, 5, VK_FORMAT_D16_UNORM, nearestCompare, "The sky's shadow maps"},
-        {pointMaps, sizes.pointShadow, lightList.pointLayers, 6, VK_FORMAT_D32_SFLOAT, smoothCompare, "The point lights' shadow maps"},
-        {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, 7, VK_FORMAT_D32_SFLOAT, nearestCompare, "The emitters' shadow maps"}};
+    const Kind kinds[] = {{sunMaps, sizes.sunShadow, lightList.sunLayers, gpu::kSunShadowsBinding, VK_FORMAT_D32_SFLOAT, smoothCompare,
+                           "The suns' shadow maps"},
+                          {skyMaps, sizes.skyShadow, lightList.skyLayers, gpu::kSkyShadowsBinding, VK_FORMAT_D16_UNORM, nearestCompare,
+                           "The sky's shadow maps"},
+                          {pointMaps, sizes.pointShadow, lightList.pointLayers, gpu::kPointShadowsBinding, VK_FORMAT_D32_SFLOAT,
+                           smoothCompare, "The point lights' shadow maps"},
+                          {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, gpu::kEmitterShadowsBinding, VK_FORMAT_D32_SFLOAT,
+                           nearestCompare, "The emitters' shadow maps"}};
     const auto toAttachment = [&](VkCommandBuffer cmd, const GpuImage& maps)
     {
         transition(gpu, cmd, maps,
@@ -269,7 +277,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
                                  : light.type == gpu::kLightSky       ? 1
                                  : light.type == gpu::kLightEmitter   ? 3
                                                                       : 2];
-        const std::vector<SceneView> views = shadowViews(light, lightList.header.pointNear);
+        const std::vector<gpu::SceneView> views = shadowViews(light, lightList.header.pointNear);
         status = gpu.submit(
             [&](VkCommandBuffer cmd)
             {

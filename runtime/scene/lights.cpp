@@ -209,7 +209,7 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
     return list;
 }
 
-SceneView faceView(vec3 centre, int face, float nearPlane)
+gpu::SceneView faceView(vec3 centre, int face, float nearPlane)
 {
     const int axis = face >> 1;
     mat4 rows(0.0f); // glm keeps columns: filled as rows, then turned
@@ -220,14 +220,14 @@ SceneView faceView(vec3 centre, int face, float nearPlane)
     return {glm::transpose(rows), centre};
 }
 
-std::vector<SceneView> shadowViews(const gpu::GpuLight& light, float pointNear)
+std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, float pointNear)
 {
     if (light.type == gpu::kLightDirectional || light.type == gpu::kLightSky)
     {
         const vec4 one(0.0f, 0.0f, 0.0f, 1.0f);
         return {{glm::transpose(mat4(2.0f * light.shadowX - one, 2.0f * light.shadowY - one, light.shadowDepth, one)), vec3(0.0f)}};
     }
-    std::vector<SceneView> views;
+    std::vector<gpu::SceneView> views;
     for (int face = 0; face < 6; ++face) views.push_back(faceView(light.position, face, pointNear));
     return views;
 }

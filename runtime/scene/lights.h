@@ -39,9 +39,9 @@ inline constexpr uint64_t kShadowBytes = uint64_t(128) << 20;
 LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, const LightSettings& settings);
 
 /// The views of an entry's shadow map: one for directional lights, six faces for the others.
-std::vector<SceneView> shadowViews(const gpu::GpuLight& light, float pointNear);
+std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, float pointNear);
 
 /// A cube face about a point: clip = (U, V, near, W) with the face coordinates of shaders/shared/chart.h.
-SceneView faceView(vec3 centre, int face, float nearPlane);
+gpu::SceneView faceView(vec3 centre, int face, float nearPlane);
 
 } // namespace sconce

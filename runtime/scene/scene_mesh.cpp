@@ -101,7 +101,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
     return mesh;
 }
 
-void SceneMesh::cull(const SceneView& view, SceneDraws& draws) const
+void SceneMesh::cull(const gpu::SceneView& view, SceneDraws& draws) const
 {
     draws.clear();
     const mat4 rows = glm::transpose(view.clip);
@@ -134,7 +134,7 @@ void SceneMesh::bind(VkCommandBuffer cmd) const
     gpu->vk.CmdSetCullMode(cmd, VK_CULL_MODE_NONE);
 }
 
-void SceneMesh::leaveOutBackFaces(VkCommandBuffer cmd, const SceneView& view) const
+void SceneMesh::leaveOutBackFaces(VkCommandBuffer cmd, const gpu::SceneView& view) const
 {
     if (twoSided) return;
     // Every second face of a cube looks through a mirror: x right, y down and w forward are then left-handed.

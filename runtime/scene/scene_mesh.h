@@ -7,17 +7,10 @@
 #include "runtime/vulkan/pipeline.h"
 #include "scene/scene.h"
 #include "shaders/shared/light_field.h"
+#include "shaders/shared/scene_passes.h"
 
 namespace sconce
 {
-
-/// A view of the scene, as shaders/scene_vertex.glsl takes it.
-struct SceneView
-{
-    mat4 clip;         // clipFromRelative: takes (position - centre, 1), field space
-    vec3 centre{0.0f}; // field space
-};
-static_assert(sizeof(SceneView) == 76);
 
 /// Runs of indices that a view may see; opaque ones need no material to be drawn as depth.
 struct SceneDraws
@@ -38,13 +31,13 @@ public:
     static Result<SceneMesh> create(Gpu& gpu, const Scene& scene, const gpu::LightFieldInfo& space);
 
     /// Which clusters a view may see; `draws` keeps its memory, so that a frame allocates nothing once it has grown.
-    void cull(const SceneView& view, SceneDraws& draws) const;
+    void cull(const gpu::SceneView& view, SceneDraws& draws) const;
     /// All triangles.
     const SceneDraws& everything() const { return all; }
     void bind(VkCommandBuffer cmd) const;
     /// After bind: leaves out the back faces that a view would see of a scene that is not two-sided. Shadow maps keep them: samples of an
     /// emitter shine to both sides of it, and through a box if they met no back face.
-    void leaveOutBackFaces(VkCommandBuffer cmd, const SceneView& view) const;
+    void leaveOutBackFaces(VkCommandBuffer cmd, const gpu::SceneView& view) const;
     bool hasMasked() const { return opaqueClusters < clusters.size(); }
     void draw(VkCommandBuffer cmd, std::span<const SceneDraws::Run> runs) const;
     uint64_t deviceBytes() const { return vertices.size() + indices.size(); }

@@ -1,11 +1,13 @@
 #include "runtime/scene/scene_renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "runtime/vulkan/nan_scan.h"
 #include "scene/camera_check.h"
+#include "shaders/shared/frame_passes.h"
 
 #include "spirv/area_light_comp.h"
 #include "spirv/area_light_field_comp.h"
@@ -24,21 +26,6 @@ constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
 
-struct DirectPush
-{
-    vec3 origin;
-    float scale;
-    vec3 sky;
-    uint32_t lightCount;
-};
-
-struct AreaPush
-{
-    vec3 origin;
-    float scale;
-    uint32_t samples;
-};
-
 struct CameraBasis
 {
     vec3 right, up, forward; // right and up scaled by the tangents of the half angles
@@ -56,10 +43,10 @@ CameraBasis basisOf(const Camera& camera, uint32_t width, uint32_t height)
 }
 
 /// x right, y down, depth near / W.
-SceneView viewOf(const Camera& camera, const CameraBasis& basis, const gpu::LightFieldInfo& space)
+gpu::SceneView viewOf(const Camera& camera, const CameraBasis& basis, const gpu::LightFieldInfo& space)
 {
     const vec3 x = basis.right / glm::dot(basis.right, basis.right), y = -basis.up / glm::dot(basis.up, basis.up), w = basis.forward;
-    SceneView view;
+    gpu::SceneView view;
     view.clip = mat4(vec4(x.x, y.x, 0, w.x), vec4(x.y, y.y, 0, w.y), vec4(x.z, y.z, 0, w.z), vec4(0, 0, kNear, 0));
     view.centre = (camera.eye - space.origin) / space.scale;
     return view;
@@ -83,7 +70,7 @@ mat4 clipFromWorld(const Camera& camera, const CameraBasis& basis)
 } // namespace
 
 Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra,
-                               uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const uint32_t> constants,
+                               uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const ShaderConstant> constants,
                                VkDescriptorSetLayout third)
 {
     auto made = makeFrameSet(gpu, frameBlock, extra);
@@ -144,28 +131,28 @@ Status SceneRenderer::make()
     const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
     const float roughness = settings.roughness.value_or(-1.0f);
-    uint32_t specialization = 0;
-    std::memcpy(&specialization, &roughness, sizeof roughness);
+    const ShaderConstant constant{gpu::kRoughnessOverrideId, std::bit_cast<uint32_t>(roughness)};
     Pipeline::Graphics desc;
     desc.vertex = gbuffer_vert;
     desc.fragment = gbuffer_frag;
     desc.sets = layouts;
-    desc.pushBytes = sizeof(SceneView);
+    desc.pushBytes = sizeof(gpu::SceneView);
     desc.vertexBindings = SceneMesh::vertexBindings();
     desc.vertexAttributes = SceneMesh::vertexAttributes();
     desc.colorFormats = formats;
     desc.depthFormat = kDepthFormat;
-    desc.specialization = std::span(&specialization, 1);
+    desc.constants = std::span(&constant, 1);
     auto pipeline = Pipeline::graphics(gpu, desc);
     if (!pipeline) return pipeline.error();
     gBufferPass = std::move(*pipeline);
 
-    const DescriptorSet::Binding directBindings[] = {
-        {4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {5, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}, {6, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(DirectPush), scene.layout(), {}); !s) return s;
-    directSet.write(4, emission.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    directSet.write(5, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    directSet.write(6, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
+    const DescriptorSet::Binding directBindings[] = {{gpu::kDirectEmissionBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                     {gpu::kDirectNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                     {gpu::kDirectLightBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
+    if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(gpu::DirectPush), scene.layout(), {}); !s) return s;
+    directSet.write(gpu::kDirectEmissionBinding, emission.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    directSet.write(gpu::kDirectNormalBinding, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    directSet.write(gpu::kDirectLightBinding, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
 
     if (effects.diffuse)
         if (auto s = makeDiffuse(); !s) return s;
@@ -183,24 +170,20 @@ Status SceneRenderer::makeDiffuse()
 {
     if (hasAreaLight())
     {
-        const DescriptorSet::Binding bindings[] = {{4, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                   {5, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                                                   {kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+        const DescriptorSet::Binding bindings[] = {{gpu::kAreaNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                                   {gpu::kAreaDiffuseBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                                   {gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
         const bool traced = settings.effects.fieldShadows;
-        std::vector<uint32_t> constants;
+        std::vector<ShaderConstant> constants = {indirect->state().tileList->constant()};
         if (traced)
-        {
-            const auto ofField = field.constants();
-            constants.assign(ofField.begin(), ofField.end());
-        }
-        constants.push_back(indirect->state().tileList->constant());
-        if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings, sizeof(AreaPush),
-                              scene.layout(), constants, traced ? field.layout() : VK_NULL_HANDLE);
+            for (const ShaderConstant& ofField : shaderConstants(field)) constants.push_back(ofField);
+        if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings,
+                              sizeof(gpu::AreaPush), scene.layout(), constants, traced ? field.layout() : VK_NULL_HANDLE);
             !s)
             return s;
-        areaSet.write(4, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        areaSet.write(5, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
-        areaSet.write(kTileBinding, indirect->state().tileList->buffer());
+        areaSet.write(gpu::kAreaNormalBinding, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        areaSet.write(gpu::kAreaDiffuseBinding, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
+        areaSet.write(gpu::kTileBinding, indirect->state().tileList->buffer());
     }
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
                               settings.width, settings.height};
@@ -216,30 +199,31 @@ Status SceneRenderer::makeCompose()
     const IndirectEffects& effects = settings.effects;
     struct Shown
     {
+        uint32_t binding;
         const GpuImage& image;
         bool made;
     };
     // What is not made is not read: anything may be bound in its place.
-    const Shown images[] = {{direct, true},
-                            {indirect->state().diffuseImage, effects.diffuse},
-                            {indirect->state().roughImage, effects.rough},
-                            {indirect->state().glossyImage, effects.glossy},
-                            {indirect->state().mirrorImage, effects.mirror},
-                            {beauty, true},
-                            {diffuseLayer, bool(diffuseLayer)},
-                            {glossyLayer, bool(glossyLayer)}};
+    const Shown images[] = {{gpu::kComposeDirectBinding, direct, true},
+                            {gpu::kComposeDiffuseBinding, indirect->state().diffuseImage, effects.diffuse},
+                            {gpu::kComposeRoughBinding, indirect->state().roughImage, effects.rough},
+                            {gpu::kComposeGlossyBinding, indirect->state().glossyImage, effects.glossy},
+                            {gpu::kComposeMirrorBinding, indirect->state().mirrorImage, effects.mirror},
+                            {gpu::kComposeBeautyBinding, beauty, true},
+                            {gpu::kComposeDiffuseLayerBinding, diffuseLayer, bool(diffuseLayer)},
+                            {gpu::kComposeGlossyLayerBinding, glossyLayer, bool(glossyLayer)}};
     std::vector<DescriptorSet::Binding> bindings;
-    for (uint32_t i = 0; i < std::size(images); ++i) bindings.push_back({4 + i, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    for (const Shown& shown : images) bindings.push_back({shown.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
     uint32_t made = 0;
     for (const auto& [term, on] : {std::pair{gpu::kTermDiffuse, effects.diffuse},
                                    {gpu::kTermRough, effects.rough},
                                    {gpu::kTermGlossy, effects.glossy},
                                    {gpu::kTermMirror, effects.mirror}})
         made |= on ? 1u << term : 0u;
-    const uint32_t constants[] = {made, diffuseLayer ? 1u : 0u, glossyLayer ? 1u : 0u};
+    const ShaderConstant constants[] = {
+        {gpu::kMadeId, made}, {gpu::kDiffuseLayerId, diffuseLayer ? 1u : 0u}, {gpu::kGlossyLayerId, glossyLayer ? 1u : 0u}};
     if (auto s = makePass(composePass, composeSet, compose_comp, bindings, 0, scene.layout(), constants); !s) return s;
-    for (uint32_t i = 0; i < std::size(images); ++i)
-        composeSet.write(4 + i, (images[i].made ? images[i].image : beauty).view(), VK_IMAGE_LAYOUT_GENERAL);
+    for (const Shown& shown : images) composeSet.write(shown.binding, (shown.made ? shown.image : beauty).view(), VK_IMAGE_LAYOUT_GENERAL);
     return success();
 }
 
@@ -258,7 +242,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const Dev
     return made;
 }
 
-void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const SceneView& view)
+void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
 {
     const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &emission, &geometricNormal};
     VkRenderingAttachmentInfo colors[4]{};
@@ -351,7 +335,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (timer) timer->begin(cmd, "direct light");
     const VkDescriptorSet directSets[] = {scene.descriptorSet(), directSet.handle()};
     directPass.bind(cmd, directSets);
-    directPass.push(cmd, DirectPush{space.origin, space.scale, space.sky, scene.lights().header.deltaCount});
+    directPass.push(cmd, gpu::DirectPush{space.origin, space.scale, space.sky, scene.lights().header.deltaCount});
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
     if (timer) timer->end(cmd);
     scanImage(gpu, cmd, "direct light", direct);
@@ -369,7 +353,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (areaPass)
     {
         begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
-        areaPass.push(cmd, AreaPush{space.origin, space.scale, settings.areaSamples});
+        areaPass.push(cmd, gpu::AreaPush{space.origin, space.scale, settings.areaSamples});
         indirect->state().tileList->dispatch(cmd, gpu::kTermDiffuse);
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "area light", indirect->state().diffuseImage);

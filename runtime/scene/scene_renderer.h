@@ -60,11 +60,11 @@ private:
     }
     Status make();
     Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::span<const DescriptorSet::Binding> extra, uint32_t pushBytes,
-                    VkDescriptorSetLayout first, std::span<const uint32_t> constants, VkDescriptorSetLayout third = VK_NULL_HANDLE);
+                    VkDescriptorSetLayout first, std::span<const ShaderConstant> constants, VkDescriptorSetLayout third = VK_NULL_HANDLE);
     Status makeDiffuse();
     Status makeCompose();
     bool hasAreaLight() const;
-    void drawGBuffer(VkCommandBuffer cmd, const SceneView& view);
+    void drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view);
     Result<std::vector<glm::vec4>> readBack(const GpuImage& image, VkImageLayout layout);
 
     Gpu& gpu;

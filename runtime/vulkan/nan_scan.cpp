@@ -18,13 +18,6 @@ constexpr uint32_t kScans = 4096;                             // a submit
 constexpr uint32_t kNoPlace = ~0u;
 constexpr uint32_t kGroups = 256; // at most
 
-struct Push // as shaders/nan_scan.comp
-{
-    VkDeviceAddress words, found;
-    uint32_t count, before, kind, stride, mask;
-    uint32_t unused = 0; // to a multiple of 8
-};
-
 struct Layout
 {
     uint32_t wordsAPixel = 0; // 0: integers
@@ -66,7 +59,7 @@ void everythingBefore(const Gpu& gpu, VkCommandBuffer cmd)
 Result<std::unique_ptr<NanScan>> NanScan::create(Gpu& gpu)
 {
     std::unique_ptr<NanScan> made(new NanScan(gpu));
-    auto pipeline = Pipeline::compute(gpu, nan_scan_comp, {}, sizeof(Push));
+    auto pipeline = Pipeline::compute(gpu, nan_scan_comp, {}, sizeof(gpu::NanScanPush));
     if (!pipeline) return pipeline.error();
     made->pipeline = std::move(*pipeline);
     auto scratch = gpu.makeBuffer(kScratchBytes, 0, MemoryUse::device, "scratch of the scan for NaN");
@@ -109,7 +102,7 @@ void NanScan::dispatch(VkCommandBuffer cmd, VkDeviceAddress words, uint32_t coun
 {
     const VkDeviceAddress found = places.address() + (scans.size() - 1) * sizeof(uint32_t);
     pipeline.bind(cmd);
-    pipeline.push(cmd, Push{words, found, count, before, how.kind, how.stride, how.mask});
+    pipeline.push(cmd, gpu::NanScanPush{words, found, count, before, how.kind, how.stride, how.mask, 0});
     gpu.vk.CmdDispatch(cmd, std::min((count + 63) / 64, kGroups), 1, 1);
     everythingBefore(gpu, cmd);
 }

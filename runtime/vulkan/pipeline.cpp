@@ -1,6 +1,7 @@
 #include "runtime/vulkan/pipeline.h"
 
 #include <cassert>
+#include <cstddef>
 
 namespace sconce
 {
@@ -97,10 +98,11 @@ struct Specialization
     std::vector<VkSpecializationMapEntry> entries;
     VkSpecializationInfo info{};
 
-    explicit Specialization(std::span<const uint32_t> values)
+    explicit Specialization(std::span<const ShaderConstant> constants)
     {
-        for (uint32_t i = 0; i < values.size(); ++i) entries.push_back({i, i * 4, 4});
-        info = {uint32_t(entries.size()), entries.data(), values.size_bytes(), values.data()};
+        for (uint32_t i = 0; i < constants.size(); ++i)
+            entries.push_back({constants[i].id, uint32_t(i * sizeof(ShaderConstant) + offsetof(ShaderConstant, value)), 4});
+        info = {uint32_t(entries.size()), entries.data(), constants.size_bytes(), constants.data()};
     }
 };
 
@@ -131,7 +133,7 @@ Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_
 }
 
 Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
-                                   std::span<const uint32_t> specialization)
+                                   std::span<const ShaderConstant> constants)
 {
     Pipeline made;
     made.gpu = &gpu;
@@ -139,9 +141,9 @@ Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDes
     if (auto status = made.makeLayout(sets, pushBytes); !status) return status.error();
     const Module module(gpu, shader);
     if (module.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", module.result);
-    const Specialization constants(specialization);
+    const Specialization specialization(constants);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, constants);
+    info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
     info.layout = made.pipelineLayout.get();
     const VkResult result =
         gpu.vk.CreateComputePipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, made.pipeline.fresh(gpu));
@@ -159,9 +161,9 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     const Module vertex(gpu, desc.vertex), fragment(gpu, desc.fragment);
     if (vertex.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", vertex.result);
     if (fragment.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", fragment.result);
-    const Specialization constants(desc.specialization);
-    const VkPipelineShaderStageCreateInfo stages[] = {stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants),
-                                                      stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants)};
+    const Specialization specialization(desc.constants);
+    const VkPipelineShaderStageCreateInfo stages[] = {stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex, specialization),
+                                                      stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, specialization)};
     VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     input.vertexBindingDescriptionCount = uint32_t(desc.vertexBindings.size());
     input.pVertexBindingDescriptions = desc.vertexBindings.data();

@@ -36,13 +36,20 @@ private:
 
 using Spirv = std::span<const uint32_t>;
 
+/// The value of a shader's specialisation constant.
+struct ShaderConstant
+{
+    uint32_t id;
+    uint32_t value; // or the bits of a float
+};
+
 /// A compute or graphics pipeline with its layout; move-only.
 class Pipeline
 {
 public:
-    /// @param specialization values of constant ids 0, 1, ..., 32 bits each
+    /// @param constants  those with an id that the shader lacks change nothing
     static Result<Pipeline> compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
-                                    std::span<const uint32_t> specialization = {});
+                                    std::span<const ShaderConstant> constants = {});
 
     struct Graphics
     {
@@ -55,7 +62,7 @@ public:
         std::span<const VkFormat> colorFormats;
         VkFormat depthFormat = VK_FORMAT_UNDEFINED;
         VkCompareOp depthCompare = VK_COMPARE_OP_GREATER; // depth 0 is infinitely far
-        std::span<const uint32_t> specialization;         // of both stages
+        std::span<const ShaderConstant> constants;        // of both stages
     };
     static Result<Pipeline> graphics(Gpu& gpu, const Graphics& desc);
 

@@ -1,9 +1,11 @@
 // R11G11B10F words: radiance and irradiance of the probe maps. Shared text, see texel.h. GLSL has no pack function for this format, so it is
 // written here once: unsigned floats with 5 exponent bits and 6, 6, 5 bits of mantissa (Vulkan specification, B10G11R11_UFLOAT_PACK32).
+#if defined(__cplusplus) || !defined(SCONCE_COLOR) // C++ includes it once for each precision
+#define SCONCE_COLOR
 
 /// Bits of a small unsigned float with the given mantissa width, from the half float of the same exponent range; saturated.
 /// @param up  [0,1): the share of a step that is added before the rest is cut off; 0.5 rounds to nearest
-SCONCE_FN uint smallFloatBits(real value, int mantissa, real up)
+SCONCE_PURE uint smallFloatBits(real value, int mantissa, real up)
 {
     real finite = value > real(0.0) ? min(value, real(64000.0)) : real(0.0); // also turns NaN into 0
     uint half16 = packHalf2x16(vec2f(float(finite), 0.0f)) & 0x7fffu;
@@ -13,20 +15,22 @@ SCONCE_FN uint smallFloatBits(real value, int mantissa, real up)
     return min(rounded, largest);
 }
 
-SCONCE_FN real smallFloatValue(uint bits, int mantissa) { return real(unpackHalf2x16(bits << (10 - mantissa)).x); }
+SCONCE_PURE real smallFloatValue(uint bits, int mantissa) { return real(unpackHalf2x16(bits << (10 - mantissa)).x); }
 
 /// @param up  see smallFloatBits; one of its own for each texel keeps the mean of many texels, whose steps are 1.6 % (blue 3 %) apart, true
-SCONCE_FN uint packRadianceDithered(vec3 c, real up)
+SCONCE_PURE uint packRadianceDithered(vec3 c, real up)
 {
     return smallFloatBits(c.x, 6, up) | (smallFloatBits(c.y, 6, up) << 11) | (smallFloatBits(c.z, 5, up) << 22);
 }
 
-SCONCE_FN uint packRadiance(vec3 c) { return packRadianceDithered(c, real(0.5)); }
+SCONCE_PURE uint packRadiance(vec3 c) { return packRadianceDithered(c, real(0.5)); }
 
 /// An offset of its own for every texel, [0,1): the golden ratio's multiples (Weyl), as a sequence over the texels' numbers.
-SCONCE_FN real ditherOf(uint texel) { return real((texel * 2654435769u) >> 8) / real(16777216.0); }
+SCONCE_PURE real ditherOf(uint texel) { return real((texel * 2654435769u) >> 8) / real(16777216.0); }
 
-SCONCE_FN vec3 unpackRadiance(uint w)
+SCONCE_PURE vec3 unpackRadiance(uint w)
 {
     return vec3(smallFloatValue(w & 0x7ffu, 6), smallFloatValue((w >> 11) & 0x7ffu, 6), smallFloatValue(w >> 22, 5));
 }
+
+#endif

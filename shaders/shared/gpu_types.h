@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <glm/packing.hpp>
 #define SCONCE_FN inline
+#define SCONCE_PURE static inline // asks nothing of the struct that it is included in: callable without one
 #define SCONCE_OUT(type) type&
 #define SCONCE_INOUT(type) type&
 #define SCONCE_IN(type) const type&
@@ -29,6 +30,7 @@ using glm::vec3;
 using glm::vec4;
 using DeviceAddress = std::uint64_t; // VkDeviceAddress
 } // namespace sconce::gpu
+#define SCONCE_ADDRESS(type) DeviceAddress
 #define SCONCE_STRUCTS_BEGIN namespace sconce::gpu {
 #define SCONCE_STRUCTS_END }
 #else
@@ -38,12 +40,14 @@ using DeviceAddress = std::uint64_t; // VkDeviceAddress
 #define vec2f vec2
 #define vec3f vec3
 #define SCONCE_FN
+#define SCONCE_PURE
 #define SCONCE_OUT(type) out type
 #define SCONCE_INOUT(type) inout type
 #define SCONCE_IN(type) in type
 #define SCONCE_CONST const
 #define SCONCE_EXACT precise // a compiler must not take (a + b) - a for b
 #define SCONCE_CHECK_SIZE(type, bytes)
+#define SCONCE_ADDRESS(type) type // the buffer_reference of that name
 #define SCONCE_STRUCTS_BEGIN
 #define SCONCE_STRUCTS_END
 #endif

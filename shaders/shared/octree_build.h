@@ -1,7 +1,14 @@
 // What the passes that build the octree's lists share: GPU passes and their CPU twin run octree_rank.h on these.
-#include "shared/gpu_types.h"
+#include "shared/light_field.h"
 #ifndef SCONCE_OCTREE_BUILD_H
 #define SCONCE_OCTREE_BUILD_H
+#ifndef __cplusplus
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MapWords { uint word[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Probes { ProbeHeader probe[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Candidates { uvec2 candidate[]; };
+#endif
 SCONCE_STRUCTS_BEGIN
 
 const uint kSurfelSlots = 16u; // surface samples a voxel keeps: one an octant of the voxel and side of the surface
@@ -31,6 +38,34 @@ struct OctreeBuild
     uint unused;
 };
 SCONCE_CHECK_SIZE(OctreeBuild, 88);
+
+/// What all passes read.
+struct OctreeInputs
+{
+    OctreeBuild build;
+    SCONCE_ADDRESS(MapWords) distance;
+    SCONCE_ADDRESS(Probes) probes;
+    SCONCE_ADDRESS(Candidates) candidates; // [region][build.candidates] probe, weight
+};
+SCONCE_CHECK_SIZE(OctreeInputs, 112);
+#ifndef __cplusplus
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Inputs { OctreeInputs inputs; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SurfelKeys { uint key[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Lists { uvec2 list[]; };
+#endif
+
+struct OctreePush
+{
+    SCONCE_ADDRESS(Inputs) settings;
+    SCONCE_ADDRESS(SurfelKeys) surfels; // [voxel][kSurfelSlots]
+    SCONCE_ADDRESS(Lists) from;
+    SCONCE_ADDRESS(Lists) to;
+    uint first;  // of the samples, or blocks of voxels, of this dispatch
+    uint count;  // samples
+    ivec3 size;  // nodes of the level written
+    uint unused; // to a multiple of 8
+};
+SCONCE_CHECK_SIZE(OctreePush, 56);
 
 SCONCE_STRUCTS_END
 #endif

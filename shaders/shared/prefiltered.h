@@ -6,7 +6,7 @@ SCONCE_CONST float kFinestLobe = 0.05f; // standard deviation of level 0's lobe,
 SCONCE_CONST float kLobeGrowth = 2.5f;  // of the width from level to level
 
 /// The texel that one outside an octahedral map of n texels a side stands for: the border is mirrored about its middle.
-SCONCE_FN ivec2 foldOctahedral(int x, int y, int n)
+SCONCE_PURE ivec2 foldOctahedral(int x, int y, int n)
 {
     if (x < 0)
     {
@@ -39,7 +39,7 @@ struct OctahedralTaps
 };
 
 /// Of an octahedral map of n texels a side; across its border the look-up goes on where the sphere does.
-SCONCE_FN OctahedralTaps octahedralTaps(vec2 uv, int n)
+SCONCE_PURE OctahedralTaps octahedralTaps(vec2 uv, int n)
 {
     real x = uv.x * real(n) - real(0.5);
     real y = uv.y * real(n) - real(0.5);
@@ -91,7 +91,7 @@ struct Lobe
     real width;     // standard deviation, radians
 };
 
-SCONCE_FN Lobe reflectedLobe(vec3 normal, vec3 view, real alpha)
+SCONCE_PURE Lobe reflectedLobe(vec3 normal, vec3 view, real alpha)
 {
     Lobe lobe;
     vec3 mirrored = real(2.0) * dot(normal, view) * normal - view;

@@ -20,16 +20,47 @@ struct TraceResult
     real confidence;  // [0,1], see RayHit
 };
 
-/// The time at which the ray leaves the field's box, enlarged by 2 % so that a wall on its border is met; 0 when it never is inside.
+SCONCE_CONST real kBeyondBounds = real(0.02); // share of the diagonal that the field's box is enlarged by, so that a wall on its border is met
+SCONCE_CONST real kBeyondBox = real(4.0);     // diagonals: further than from any point of the enlarged box to any other
+SCONCE_CONST real kParallel = real(1e-12);    // a direction's part below which it never comes to a plane across it
+
+// How far ahead of the point that a ray has come to, in voxels, the lists of leaves are asked, one after another: just beyond it, since what
+// stopped the ray lies there, then in the next voxels. Also what the opponents with lists ask.
+SCONCE_CONST int kLookAheads = 3;
+SCONCE_FN real lookAhead(int list) { return list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75)); }
+SCONCE_CONST real kLookBack = real(-0.02); // voxels: a second opinion is asked of the leaf on the near side of the surface
+
+SCONCE_CONST real kProgress = real(1e-4); // share of the diagonal that a ray must come on to ask probes again
+SCONCE_CONST real kAtStart = real(0.5);   // voxels from its origin within which a ray is at the surface it starts on
+SCONCE_CONST real kFreeShare = real(0.5); // of a probe's free radius: what is skipped, with room for what rounding did to the distances
+SCONCE_CONST real kNearerSquared = real(0.81); // a second opinion comes from at most 0.9 of the distance: else it sees no finer
+SCONCE_CONST real kOpinionTexels = real(2.0);  // of the first answer's, before it: where the second opinion starts
+
+SCONCE_CONST real kLargest = real(1e18);   // of what an origin may hold: its square is still a number
+SCONCE_CONST real kUnitWithin = real(1e-3); // of a unit direction's squared length
+
+SCONCE_CONST int kTurnsAProbe = 64; // see turnLimit
+SCONCE_CONST int kTurnsATexel = 6;
+
+// Of confidenceOf, as they were measured.
+SCONCE_CONST real kWrongFirst = real(0.01);     // share of wrong answers of the first probe
+SCONCE_CONST int kMostDoublings = 6;            // hand-offs that double it
+SCONCE_CONST real kWrongMost = real(0.6);
+SCONCE_CONST real kTrustContinued = real(0.92); // of a hit behind a surfel, in a surface that goes on
+SCONCE_CONST real kTrustFirst = real(0.85);     // the same in the probe's first texel
+SCONCE_CONST real kWrongExtent = real(4.0);     // wrong share by the texel's extent over the diagonal
+SCONCE_CONST real kWrongExtentMost = real(0.3);
+
+/// The time at which the ray leaves the field's box, enlarged; 0 when it never is inside.
 SCONCE_FN real fieldExit(vec3 o, vec3 d)
 {
-    vec3 low = vec3(field.sceneLow) - real(0.02) * real(field.diagonal);
-    vec3 high = vec3(field.sceneHigh) + real(0.02) * real(field.diagonal);
+    vec3 low = vec3(field.sceneLow) - kBeyondBounds * real(field.diagonal);
+    vec3 high = vec3(field.sceneHigh) + kBeyondBounds * real(field.diagonal);
     real enter = real(0.0);
-    real leave = real(4.0) * real(field.diagonal) + length(o);
+    real leave = kBeyondBox * real(field.diagonal) + length(o);
     for (int a = 0; a < 3; ++a)
     {
-        if (abs(d[a]) < real(1e-12))
+        if (abs(d[a]) < kParallel)
         {
             if (o[a] < low[a] || o[a] > high[a]) return real(0.0);
             continue;
@@ -42,20 +73,27 @@ SCONCE_FN real fieldExit(vec3 o, vec3 d)
     return leave > enter ? leave : real(0.0);
 }
 
+/// Whether a ray is one: its origin finite, its direction unit.
+SCONCE_FN bool canTrace(vec3 origin, vec3 direction)
+{
+    real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
+    return sum < kLargest && abs(dot(direction, direction) - real(1.0)) < kUnitWithin;
+}
+
 /// Goes on in a probe, from t.
 SCONCE_FN void enterProbe(SCONCE_INOUT(RayState) r, uint probe, real t)
 {
-    addTried(r.tried, probe);
-    ++r.handoffs;
-    r.probe = probe;
+    addTried(r.asked.tried, probe);
+    ++r.cost.handoffs;
+    r.visit.probe = probe;
     ProbeHeader header = probeHeader(probe);
-    r.relative = r.origin - vec3(header.centre);
-    r.freeBall = real(0.5) * real(header.freeRadius);
-    r.segments = 0;
-    r.fresh = true;
-    r.nextFace = -2;
-    r.ta = t;
-    r.tEntered = r.t;
+    r.visit.relative = r.ray.origin - vec3(header.centre);
+    r.visit.freeBall = kFreeShare * real(header.freeRadius);
+    r.visit.segments = 0;
+    r.visit.fresh = true;
+    r.segment.nextFace = kFaceToSearch;
+    r.segment.ta = t;
+    r.visit.tEntered = r.t;
     r.phase = kPhaseSegment;
 }
 
@@ -70,119 +108,128 @@ SCONCE_FN vec3 texelNormal(int face, vec2 pixel, uint word)
     return -normalize(mapNormal(face, vec3(qu, qv, real(1.0) - u * qu - v * qv)));
 }
 
-/// Next probe. After a hit in a large texel (r.opinionT): one of the leaf there that stands nearer, for a second opinion; what it sees
-/// counts, and where it comes to a dead end before the hit, or there is none, the hit stands. Else: the leaf's list at the point reached,
-/// then the lists a little further on; the ray ends as UNKNOWN when all were asked. At its start a ray asks those of a list that stand before
-/// the surface it starts on first: to one behind a thin sheet the start would look like a place on its own side.
-SCONCE_FN void chooseProbe(SCONCE_INOUT(RayState) r)
+SCONCE_FN vec3 pointAt(SCONCE_IN(FieldRay) ray, real t) { return ray.origin + t * ray.direction; }
+
+/// Whether a hit waits for the word of a nearer probe.
+SCONCE_FN bool wantsOpinion(SCONCE_IN(RayState) r) { return r.asked.opinionT >= real(0.0) && r.status == kHit; }
+
+/// After a hit in a large texel: a probe of the leaf there that stands nearer, and before the surface, is asked from a little before it. What it
+/// sees counts; where it comes to a dead end before the hit, or there is none, the hit stands.
+SCONCE_FN void secondOpinion(SCONCE_INOUT(RayState) r)
 {
-    bool opinion = r.opinionT >= real(0.0) && r.status == kHit;
-    if (!opinion)
-    {
-        if (r.opinionT >= real(0.0)) r.opinionT = real(-2.0);
-        r.status = r.t >= r.tMax ? kMiss : kUnknown;
-        if (r.t >= r.tMax || r.handoffs > quality.maxHandoffs)
-        {
-            r.phase = kPhaseDone;
-            return;
-        }
-        if (r.t > r.tClear + real(1e-4) * real(field.diagonal))
-        {
-            keepLastTried(r.tried);
-            r.tClear = r.t;
-        }
-    }
-    vec3 own = r.relative + r.t * r.direction;
-    real best = real(0.81) * dot(own, own); // of an opinion: 0.9 of the distance, squared
+    vec3 own = r.visit.relative + r.t * r.ray.direction;
+    real best = kNearerSquared * dot(own, own);
     uint found = kNoProbe;
-    vec3 hitNormal = vec3(real(0.0));
-    if (opinion) hitNormal = texelNormal(r.lastFace, r.pixel, r.hitWord);
+    vec3 hitNormal = texelNormal(r.surfel.face, r.surfel.pixel, r.surfel.word);
     // One that gave the ray up where this probe took it over would be asked at the very border of its texel: it has answered.
-    bool fromEntry = r.t - real(2.0) * r.wordSize <= r.tEntered;
-    bool starts = r.t <= real(0.5) * real(field.voxel);
-    for (int list = 0; list < 3 && found == kNoProbe; ++list)
+    bool fromEntry = r.t - kOpinionTexels * r.surfel.extent <= r.visit.tEntered;
+    uvec4 ranked = rankedProbesAt(pointAt(r.ray, r.t + kLookBack * real(field.voxel)), r.cost.indexReads);
+    for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
     {
-        real ahead = opinion ? real(-0.02) : (list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75)));
-        uint behind = kNoProbe;
-        uvec4 ranked = rankedProbesAt(r.origin + (r.t + ahead * real(field.voxel)) * r.direction, r.indexReads);
-        for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
+        if (k >= quality.ranked) break;
+        vec3 to = vec3(probeHeader(ranked[k]).centre) - pointAt(r.ray, r.t);
+        bool answered = ranked[k] == r.visit.probe || (fromEntry && wasTried(r.asked.tried, ranked[k]));
+        if (!answered && dot(to, to) < best && dot(to, hitNormal) > real(0.0))
         {
-            if (k >= quality.ranked) break;
-            vec3 centre = vec3(probeHeader(ranked[k]).centre); // outside of the branches, which lanes beside each other all take
-            bool tried = wasTried(r.tried, ranked[k]);
-            if (opinion)
-            {
-                vec3 to = centre - (r.origin + r.t * r.direction);
-                bool asked = ranked[k] == r.probe || (fromEntry && tried);
-                if (!asked && dot(to, to) < best && dot(to, hitNormal) > real(0.0))
-                {
-                    best = dot(to, to);
-                    found = ranked[k];
-                }
-            }
-            else if (found == kNoProbe && !tried)
-            {
-                bool faces = !starts || dot(centre - r.origin, r.startNormal) >= real(0.0);
-                if (faces) found = ranked[k];
-                else if (behind == kNoProbe) behind = ranked[k];
-            }
+            best = dot(to, to);
+            found = ranked[k];
         }
-        if (found == kNoProbe) found = behind;
-        if (opinion) break;
     }
-    if (found == kNoProbe || (!opinion && r.tried.count >= kMaxTried))
+    if (found == kNoProbe)
     {
         r.phase = kPhaseDone;
         return;
     }
-    real start = max(r.t - r.back, real(0.0));
-    if (opinion)
+    r.asked.opinionReach = r.t + r.surfel.extent;
+    r.t = max(r.t - kOpinionTexels * r.surfel.extent, r.visit.tEntered);
+    r.status = kUnknown;
+    enterProbe(r, found, r.t);
+    r.asked.back = real(0.0);
+}
+
+/// The leaf's list at the point reached, then the lists a little further on; the ray ends as UNKNOWN when all were asked. At its start a ray
+/// asks those of a list that stand before the surface it starts on first: to one behind a thin sheet the start would look like a place on its
+/// own side.
+SCONCE_FN void nextProbe(SCONCE_INOUT(RayState) r)
+{
+    if (r.asked.opinionT >= real(0.0)) r.asked.opinionT = kOpinionAsked;
+    r.status = r.t >= r.ray.tMax ? kMiss : kUnknown;
+    if (r.t >= r.ray.tMax || r.cost.handoffs > quality.maxHandoffs)
     {
-        r.opinionReach = r.t + r.wordSize;
-        r.t = max(r.t - real(2.0) * r.wordSize, r.tEntered);
-        start = r.t;
-        r.status = kUnknown;
+        r.phase = kPhaseDone;
+        return;
     }
-    enterProbe(r, found, start);
-    r.back = real(0.0);
+    if (r.t > r.asked.tClear + kProgress * real(field.diagonal))
+    {
+        keepLastTried(r.asked.tried);
+        r.asked.tClear = r.t;
+    }
+    uint found = kNoProbe;
+    bool starts = r.t <= kAtStart * real(field.voxel);
+    for (int list = 0; list < kLookAheads && found == kNoProbe; ++list)
+    {
+        uint behind = kNoProbe;
+        uvec4 ranked = rankedProbesAt(pointAt(r.ray, r.t + lookAhead(list) * real(field.voxel)), r.cost.indexReads);
+        for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
+        {
+            if (k >= quality.ranked) break;
+            vec3 centre = vec3(probeHeader(ranked[k]).centre); // outside of the branches, which lanes beside each other all take
+            if (found != kNoProbe || wasTried(r.asked.tried, ranked[k])) continue;
+            bool faces = !starts || dot(centre - r.ray.origin, r.ray.normal) >= real(0.0);
+            if (faces) found = ranked[k];
+            else if (behind == kNoProbe) behind = ranked[k];
+        }
+        if (found == kNoProbe) found = behind;
+    }
+    if (found == kNoProbe || r.asked.tried.count >= kMaxTried)
+    {
+        r.phase = kPhaseDone;
+        return;
+    }
+    enterProbe(r, found, max(r.t - r.asked.back, real(0.0)));
+    r.asked.back = real(0.0);
 }
 
 SCONCE_FN RayState beginRay(vec3 origin, vec3 direction, vec3 normal)
 {
     RayState r;
-    r.origin = origin;
-    r.direction = direction;
-    r.startNormal = normal;
-    r.tMax = fieldExit(origin, direction);
+    r.ray.origin = origin;
+    r.ray.direction = direction;
+    r.ray.normal = normal;
+    r.ray.tMax = fieldExit(origin, direction);
     r.t = real(0.0);
     r.status = kUnknown;
     r.phase = kPhaseChoose;
-    r.probe = kNoProbe;
-    r.back = real(0.0);
-    r.opinionT = real(-1.0);
-    r.opinionReach = real(0.0);
-    r.tEntered = real(0.0);
-    r.relative = vec3(real(0.0));
-    r.wordSize = real(0.0);
-    r.event = kEventCrossing;
-    r.tClear = real(0.0);
-    r.tried = noneTried();
-    r.handoffs = 0;
-    r.distanceReads = 0;
-    r.indexReads = 0;
-    r.pixel = vec2(real(0.0), real(0.0));
-    r.hitWord = 0u;
-    r.lastProbe = kNoProbe;
-    r.lastFace = -1;
-    r.segments = 0;
-    r.face = 0;
-    r.fresh = true;
+    r.visit.probe = kNoProbe;
+    r.asked.back = real(0.0);
+    r.asked.opinionT = kOpinionOpen;
+    r.asked.opinionReach = real(0.0);
+    r.visit.tEntered = real(0.0);
+    r.visit.relative = vec3(real(0.0));
+    r.surfel.extent = real(0.0);
+    r.surfel.event = kEventCrossing;
+    r.asked.tClear = real(0.0);
+    r.asked.tried = noneTried();
+    r.cost.handoffs = 0;
+    r.cost.distanceReads = 0;
+    r.cost.indexReads = 0;
+    r.surfel.pixel = vec2(real(0.0), real(0.0));
+    r.surfel.word = 0u;
+    r.surfel.probe = kNoProbe;
+    r.surfel.face = -1;
+    r.visit.segments = 0;
+    r.segment.face = 0;
+    r.visit.fresh = true;
     return r;
 }
 
 SCONCE_FN void turn(SCONCE_INOUT(RayState) r)
 {
-    if (r.phase == kPhaseChoose) chooseProbe(r);
+    if (r.phase == kPhaseChoose)
+    {
+        if (wantsOpinion(r)) secondOpinion(r);
+        else nextProbe(r);
+    }
     if (r.phase == kPhaseSegment) setUpSegment(r);
     if (r.phase == kPhaseMarch) march(r);
     if (r.phase == kPhaseFine) fineEvent(r);
@@ -190,14 +237,13 @@ SCONCE_FN void turn(SCONCE_INOUT(RayState) r)
 
 /// Turns after which a ray ends as UNKNOWN whatever it does: every march step advances a texel index or descends a level (at most 8 N
 /// steps a segment, kMarchSteps a turn); a fine event that goes on advances one. Derived, never reached by a ray that makes progress.
-SCONCE_FN int turnLimit() { return (quality.maxHandoffs + 1) * (64 + 6 * int(field.faceSize)); }
+SCONCE_FN int turnLimit() { return (quality.maxHandoffs + 1) * (kTurnsAProbe + kTurnsATexel * int(field.faceSize)); }
 
 /// A ray at its start; one that is not finite, or has no unit direction, is done at once: a MISS at t = 0 with no probe. `normal`: see Ray.
 SCONCE_FN RayState startRay(vec3 origin, vec3 direction, vec3 normal)
 {
     RayState r = beginRay(origin, direction, normal);
-    real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
-    if (!(sum < real(1e18)) || !(abs(dot(direction, direction) - real(1.0)) < real(1e-3)))
+    if (!canTrace(origin, direction))
     {
         r.status = kMiss;
         r.phase = kPhaseDone;
@@ -210,11 +256,11 @@ SCONCE_FN RayState startRay(vec3 origin, vec3 direction, vec3 normal)
 SCONCE_FN real confidenceOf(SCONCE_IN(RayState) r)
 {
     if (r.phase != kPhaseDone || r.status == kUnknown) return real(0.0);
-    real doubled = real(1 << min(max(r.handoffs - 1, 0), 6));
-    real confidence = real(1.0) - min(real(0.01) * doubled, real(0.6));
+    real doubled = real(1 << min(max(r.cost.handoffs - 1, 0), kMostDoublings));
+    real confidence = real(1.0) - min(kWrongFirst * doubled, kWrongMost);
     if (r.status == kMiss) return confidence;
-    real known = r.event == kEventCrossing ? real(1.0) : (r.event == kEventContinued ? real(0.92) : real(0.85));
-    return confidence * known * (real(1.0) - min(real(4.0) * r.wordSize / real(field.diagonal), real(0.3)));
+    real known = r.surfel.event == kEventCrossing ? real(1.0) : (r.surfel.event == kEventContinued ? kTrustContinued : kTrustFirst);
+    return confidence * known * (real(1.0) - min(kWrongExtent * r.surfel.extent / real(field.diagonal), kWrongExtentMost));
 }
 
 /// What a ray has come to; UNKNOWN when it is not done.
@@ -223,14 +269,14 @@ SCONCE_FN TraceResult resultOf(SCONCE_IN(RayState) r)
     TraceResult result;
     result.status = r.phase == kPhaseDone ? r.status : kUnknown;
     result.t = r.t;
-    bool seen = result.status != kMiss && r.lastProbe != kNoProbe;
-    result.probe = seen ? r.lastProbe : (result.status == kMiss ? r.probe : kNoProbe);
-    result.face = seen ? r.lastFace : -1;
-    result.pixel = r.pixel;
-    result.word = seen ? r.hitWord : 0u;
-    result.handoffs = max(r.handoffs - 1, 0);
-    result.distanceReads = r.distanceReads;
-    result.indexReads = r.indexReads;
+    bool seen = result.status != kMiss && r.surfel.probe != kNoProbe;
+    result.probe = seen ? r.surfel.probe : (result.status == kMiss ? r.visit.probe : kNoProbe);
+    result.face = seen ? r.surfel.face : -1;
+    result.pixel = r.surfel.pixel;
+    result.word = seen ? r.surfel.word : 0u;
+    result.handoffs = max(r.cost.handoffs - 1, 0);
+    result.distanceReads = r.cost.distanceReads;
+    result.indexReads = r.cost.indexReads;
     result.confidence = confidenceOf(r);
     return result;
 }

@@ -56,7 +56,7 @@ SCONCE_FN bool lightReaches(vec3 point, vec3 direction, real distance_, vec3 nor
 {
     RayState r = startRay((point - vec3(field.origin)) / real(field.scale), direction, normal);
     real last = distance_ / real(field.scale);
-    r.tMax = min(r.tMax, last);
+    r.ray.tMax = min(r.ray.tMax, last);
     int limit = turnLimit();
     for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
     return r.status == kMiss || (r.phase == kPhaseDone && r.t >= last - real(0.002) * real(field.diagonal));

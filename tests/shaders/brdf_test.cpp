@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "shaders/shared/pure.h"
 #include "tests/support/test_scenes.h"
 
 namespace sconce
@@ -47,6 +48,21 @@ TEST(Brdf, RoughnessOneIsItsClosedForm)
                 const double vh = test::RoughModel::cosineToHalf(nl, nv, phi);
                 EXPECT_NEAR(value.diffuse.x, model.diffuse(vh), 1e-5) << nl << ' ' << nv << ' ' << phi;
                 EXPECT_NEAR(value.specular.x, model.specular(vh, nl, nv), 1e-5 * (1 + model.specular(vh, nl, nv)));
+            }
+}
+
+TEST(Brdf, FloatAgreesWithDouble)
+{
+    using Exact = Pure<double>;
+    for (double roughness : {0.05, 0.4, 1.0})
+        for (double nl : {0.1, 0.9})
+            for (double phi : {0.0, 1.0, 3.0})
+            {
+                const vec3 v = directionAt(0.5, 0.0), l = directionAt(nl, phi);
+                const BrdfValue value = evaluateBrdf({vec3(0.7f), 0.25f, float(roughness)}, kNormal, v, l);
+                const Exact::BrdfValue exact = Exact::evaluateBrdf({glm::dvec3(0.7), 0.25, roughness}, kNormal, v, l);
+                EXPECT_NEAR(value.diffuse.x, exact.diffuse.x, 1e-6) << roughness << ' ' << nl << ' ' << phi;
+                EXPECT_NEAR(value.specular.x, exact.specular.x, 1e-5 * (1 + exact.specular.x)) << roughness << ' ' << nl << ' ' << phi;
             }
 }
 
@@ -124,7 +140,7 @@ TEST(Brdf, VisibleNormalDensityIntegratesToTheShareAboveTheHorizon)
 
 TEST(Brdf, SmoothestLobeStaysFinite)
 {
-    const BrdfSurface surface{vec3(1.0f), 1.0f, SCONCE_MIRROR_ROUGHNESS};
+    const BrdfSurface surface{vec3(1.0f), 1.0f, kMirrorRoughness};
     for (double nv : {1e-6, 1e-3, 0.5, 1.0})
     {
         const vec3 v = directionAt(nv, 0.0), mirrored(-v.x, -v.y, v.z);

@@ -7,6 +7,7 @@
 #include "bench/race/traced_method.h"
 #include "runtime/field/quality.h"
 #include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/pure.h"
 #include "tests/support/cornell_field.h"
 #include "tests/support/device.h"
 
@@ -17,26 +18,24 @@ namespace
 
 using namespace testing_support;
 
-const FieldData kNoField;
-
 TEST(Octants, AreProjectiveChartsOfTheOctahedralMap)
 {
-    twin::LightFieldTwin<double> text(kNoField, {});
+    using Text = Pure<double>;
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 20000; ++i)
     {
         const glm::dvec3 p(normal(random), normal(random), normal(random)), n(normal(random), normal(random), normal(random));
-        const int octant = text.octantOf(p);
-        const glm::dvec3 uvw = text.octantCoordinates(octant, p);
-        EXPECT_NEAR(glm::distance(text.octantDirection(octant, uvw), p), 0.0, 1e-12);
+        const int octant = Text::octantOf(p);
+        const glm::dvec3 uvw = Text::octantCoordinates(octant, p);
+        EXPECT_NEAR(glm::distance(Text::octantDirection(octant, uvw), p), 0.0, 1e-12);
         EXPECT_NEAR(uvw.z, std::abs(p.x) + std::abs(p.y) + std::abs(p.z), 1e-12);
         const glm::dvec2 onMap = 0.5 * glm::dvec2(uvw) / uvw.z + 0.5;
-        EXPECT_NEAR(glm::distance(onMap, glm::dvec2(text.octahedralFromDirection(p))), 0.0, 1e-12);
+        EXPECT_NEAR(glm::distance(onMap, glm::dvec2(Text::octahedralFromDirection(p))), 0.0, 1e-12);
         // Transposes: n . p is the same function of (U, V, W).
-        const glm::dvec3 gradient = text.octantGradient(octant, n);
+        const glm::dvec3 gradient = Text::octantGradient(octant, n);
         EXPECT_NEAR(glm::dot(gradient, uvw), glm::dot(n, p), 1e-11);
-        EXPECT_NEAR(glm::distance(text.octantNormal(octant, gradient), n), 0.0, 1e-11);
+        EXPECT_NEAR(glm::distance(Text::octantNormal(octant, gradient), n), 0.0, 1e-11);
     }
 }
 

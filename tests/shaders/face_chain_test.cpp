@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/field/face_chain_text.h"
 #include "runtime/field/field_data.h"
 #include "runtime/field/field_space.h"
+#include "shaders/shared/pure.h"
 #include "tests/support/chain_bounds.h"
 
 namespace sconce
@@ -18,7 +18,7 @@ namespace
 using testing_support::expectChainBounds;
 using testing_support::planeAt;
 
-chain_text::Text text;
+using Text = Pure<float>;
 
 std::vector<uint32_t> emptyFace(uint32_t size)
 {
@@ -32,7 +32,7 @@ std::vector<uint32_t> flatFace(uint32_t size, float q0, float gx, float gy)
     for (uint32_t i = 0; i < size * size; ++i)
     {
         const float q = q0 * (1.0f + gx * (float(i % size) + 0.5f) + gy * (float(i / size) + 0.5f));
-        words[i] = text.packTexel(q, q0 * gx / q, q0 * gy / q);
+        words[i] = Text::packTexel(q, q0 * gx / q, q0 * gy / q);
     }
     buildChain(words.data(), size);
     return words;
@@ -42,15 +42,15 @@ TEST(FaceChain, EveryWordBelongsToOneCell)
 {
     for (const uint32_t size : {8u, 12u, 16u, 48u, 64u, 80u, 208u, 256u, 1024u})
     {
-        const int top = text.chainTop(size);
-        std::vector<int> owners(text.chainWords(size, top), 0);
+        const int top = Text::chainTop(size);
+        std::vector<int> owners(Text::chainWords(size, top), 0);
         for (int level = 0; level <= top; level += 2)
         {
-            const uint32_t width = text.chainWidth(size, level);
+            const uint32_t width = Text::chainWidth(size, level);
             EXPECT_GE(width << level, size);
-            for (uint32_t i = 0; i < width * width; ++i) ++owners.at(text.chainOffset(size, level) + i);
+            for (uint32_t i = 0; i < width * width; ++i) ++owners.at(Text::chainOffset(size, level) + i);
         }
-        for (uint32_t cell = 0; cell < text.chainCells(size, top); cell += 2) ++owners.at(text.chainNearWords(size, top) + cell / 2);
+        for (uint32_t cell = 0; cell < Text::chainCells(size, top); cell += 2) ++owners.at(Text::chainNearWords(size, top) + cell / 2);
         for (const int owner : owners) ASSERT_EQ(owner, 1) << "faces of " << size;
         EXPECT_EQ(6 * owners.size(), distanceWordsPerProbe(gpu::kChartCube, size));
     }
@@ -64,7 +64,7 @@ TEST(FaceChain, BoundsHoldEverySurfelBelow)
     {
         std::vector<uint32_t> words = emptyFace(size);
         for (uint32_t i = 0; i < size * size; ++i)
-            words[i] = i % 17 == 0 ? 0u : text.packTexel(q(random), gradient(random), gradient(random));
+            words[i] = i % 17 == 0 ? 0u : Text::packTexel(q(random), gradient(random), gradient(random));
         buildChain(words.data(), size);
         expectChainBounds(words, size);
     }
@@ -81,9 +81,9 @@ TEST(FaceChain, BoundsHoldSmoothSurfacesWithSilhouettes)
         const float ball = 900.0f - r2;
         const float near = 2.0f + 0.001f * std::max(ball, 0.0f), wall = 0.5f + 0.004f * float(i % size);
         if (ball > 0.0f)
-            words[i] = text.packTexel(near, -0.002f * x / near, -0.002f * y / near);
+            words[i] = Text::packTexel(near, -0.002f * x / near, -0.002f * y / near);
         else if (i % size + i / size < 140)
-            words[i] = text.packTexel(wall, 0.004f / wall, 0.0f);
+            words[i] = Text::packTexel(wall, 0.004f / wall, 0.0f);
     }
     buildChain(words.data(), size);
     expectChainBounds(words, size);
@@ -98,7 +98,7 @@ TEST(FaceChain, BoundOfAFlatWallIsTheWall)
         expectChainBounds(words, size);
         for (int level = 2; level <= 6; level += 2)
         {
-            const uint32_t width = text.chainWidth(size, level);
+            const uint32_t width = Text::chainWidth(size, level);
             for (uint32_t i = 0; i < width * width; ++i)
             {
                 const double half = 0.5 * (1 << level);
@@ -106,7 +106,7 @@ TEST(FaceChain, BoundOfAFlatWallIsTheWall)
                 const double wall = 2.0 * (1.0 + std::abs(g) * x + 0.3 * std::abs(g) * y);
                 // rounding: a half up (1e-3), the bytes of the gradients over half a cell, each to half a step of theirs
                 const double step = 0.15 * (2.0 * std::sqrt(std::abs(g) / 0.15) + 1.0 / 127.0) / 127.0;
-                EXPECT_NEAR(planeAt(text, words[text.chainOffset(size, level) + i], 0.0, 0.0), wall, wall * (2e-3 + (half + 0.5) * step));
+                EXPECT_NEAR(planeAt(words[Text::chainOffset(size, level) + i], 0.0, 0.0), wall, wall * (2e-3 + (half + 0.5) * step));
             }
         }
     }

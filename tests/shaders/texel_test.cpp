@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/field/field_space.h"
-#include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -15,12 +15,7 @@ namespace
 using glm::vec2;
 using glm::vec3;
 
-struct Text
-{
-    FieldData field;
-    twin::LightFieldTwin<float> f{field, {}};
-    twin::LightFieldTwin<double> d{field, {}};
-};
+using Text = Pure<float>;
 
 vec3 randomDirection(std::mt19937& random)
 {
@@ -30,27 +25,25 @@ vec3 randomDirection(std::mt19937& random)
 
 TEST(Chart, FaceCoordinatesInvert)
 {
-    Text text;
     std::mt19937 random(1);
     for (int i = 0; i < 10000; ++i)
     {
         const vec3 p = randomDirection(random);
-        for (int face = 0; face < 6; ++face) EXPECT_EQ(text.f.faceDirection(face, text.f.faceCoordinates(face, p)), p);
-        const vec3 on = text.f.faceCoordinates(text.f.dominantFace(p), p);
+        for (int face = 0; face < 6; ++face) EXPECT_EQ(Text::faceDirection(face, Text::faceCoordinates(face, p)), p);
+        const vec3 on = Text::faceCoordinates(Text::dominantFace(p), p);
         EXPECT_GE(on.z, std::max(std::abs(on.x), std::abs(on.y)));
     }
 }
 
 TEST(Chart, OctahedralMapInvertsAlsoOnEdgesAndCorners)
 {
-    Text text;
     std::mt19937 random(2);
     auto check = [&](vec3 d)
     {
-        const vec2 uv = text.f.octahedralFromDirection(d);
+        const vec2 uv = Text::octahedralFromDirection(d);
         EXPECT_GE(uv.x, 0.0f);
         EXPECT_LE(uv.y, 1.0f);
-        EXPECT_NEAR(glm::distance(text.f.directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f) << d.x << " " << d.y << " " << d.z;
+        EXPECT_NEAR(glm::distance(Text::directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f) << d.x << " " << d.y << " " << d.z;
     };
     for (int i = 0; i < 10000; ++i) check(randomDirection(random));
     for (float x : {-1.0f, -0.0f, 0.0f, 1.0f})
@@ -61,32 +54,30 @@ TEST(Chart, OctahedralMapInvertsAlsoOnEdgesAndCorners)
 
 TEST(Texel, GradientRoundsToNearestStep)
 {
-    Text text;
     for (float g = -0.14f; g <= 0.14f; g += 0.001f)
     {
-        const float read = text.f.unpackGradient(text.f.packGradient(g));
+        const float read = Text::unpackGradient(Text::packGradient(g));
         const float step = 2.0f * std::sqrt(std::abs(g) * 0.15f) / 127.0f + 0.15f / (127.0f * 127.0f); // of the squared scale, at g
         EXPECT_NEAR(read, g, step);
     }
-    EXPECT_FLOAT_EQ(text.f.unpackGradient(text.f.packGradient(0.9f)), 0.15f) << "saturates";
-    EXPECT_EQ(text.f.unpackGradient(text.f.packGradient(0.0f)), 0.0f);
+    EXPECT_FLOAT_EQ(Text::unpackGradient(Text::packGradient(0.9f)), 0.15f) << "saturates";
+    EXPECT_EQ(Text::unpackGradient(Text::packGradient(0.0f)), 0.0f);
 }
 
 TEST(Colour, RadianceRoundTripsWithinItsMantissa)
 {
-    Text text;
     std::mt19937 random(6);
     std::uniform_real_distribution<float> exponent(-10.0f, 15.0f);
     for (int i = 0; i < 10000; ++i)
     {
         const vec3 c(std::exp2(exponent(random)), std::exp2(exponent(random)), std::exp2(exponent(random)));
-        const vec3 r = text.f.unpackRadiance(text.f.packRadiance(c));
+        const vec3 r = Text::unpackRadiance(Text::packRadiance(c));
         EXPECT_NEAR(r.x, c.x, c.x / 120.0f);
         EXPECT_NEAR(r.y, c.y, c.y / 120.0f);
         EXPECT_NEAR(r.z, c.z, c.z / 60.0f);
     }
-    EXPECT_EQ(text.f.unpackRadiance(text.f.packRadiance(vec3(0.0f))), vec3(0.0f));
-    const vec3 extreme = text.f.unpackRadiance(text.f.packRadiance(vec3(1e9f, std::nanf(""), -3.0f)));
+    EXPECT_EQ(Text::unpackRadiance(Text::packRadiance(vec3(0.0f))), vec3(0.0f));
+    const vec3 extreme = Text::unpackRadiance(Text::packRadiance(vec3(1e9f, std::nanf(""), -3.0f)));
     EXPECT_GT(extreme.x, 60000.0f);
     EXPECT_TRUE(std::isfinite(extreme.x));
     EXPECT_EQ(extreme.y, 0.0f);

@@ -27,7 +27,7 @@ public:
         while (r.phase != text.kPhaseDone && turns < limit)
         {
             const Real before = r.t;
-            const bool opinion = r.opinionT >= Real(0);
+            const bool opinion = r.asked.opinionT >= Real(0);
             text.turn(r);
             ++turns;
             if (!(r.t >= before))

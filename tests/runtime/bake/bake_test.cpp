@@ -9,6 +9,7 @@
 #include "runtime/bake/bake.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
+#include "shaders/shared/pure.h"
 #include "tests/support/chain_bounds.h"
 #include "tests/support/device.h"
 
@@ -20,8 +21,7 @@ namespace
 using testing_support::ValidatedDevice;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-const FieldData kNoField;
-twin::LightFieldTwin<float> kText(kNoField, {});
+using Text = Pure<float>;
 
 void addQuad(Scene& scene, vec3 corner, vec3 u, vec3 v, uint32_t material = 0)
 {
@@ -107,14 +107,14 @@ struct Texel
 vec3 towards(const FieldData& field, Texel t)
 {
     const float n = float(field.info.faceSize);
-    return kText.faceDirection(t.face, {(float(t.x) + 0.5f) * 2.0f / n - 1.0f, (float(t.y) + 0.5f) * 2.0f / n - 1.0f, 1.0f});
+    return Text::faceDirection(t.face, {(float(t.x) + 0.5f) * 2.0f / n - 1.0f, (float(t.y) + 0.5f) * 2.0f / n - 1.0f, 1.0f});
 }
 
 /// The texel of probe 0 that looks in a direction.
 Texel texelAt(const FieldData& field, vec3 direction)
 {
-    const int face = kText.dominantFace(direction);
-    const vec3 uvw = kText.faceCoordinates(face, direction);
+    const int face = Text::dominantFace(direction);
+    const vec3 uvw = Text::faceCoordinates(face, direction);
     const auto pixel = [&](float u)
     { return std::min(uint32_t((0.5f * u / uvw.z + 0.5f) * float(field.info.faceSize)), field.info.faceSize - 1); };
     return {face, pixel(uvw.x), pixel(uvw.y)};
@@ -127,7 +127,7 @@ uint32_t wordAt(const FieldData& field, Texel t)
 
 vec3 radianceAt(const FieldData& field, Texel t)
 {
-    return kText.unpackRadiance(field.radiance[(size_t(t.face) * field.info.faceSize + t.y) * field.info.faceSize + t.x]);
+    return Text::unpackRadiance(field.radiance[(size_t(t.face) * field.info.faceSize + t.y) * field.info.faceSize + t.x]);
 }
 
 template <class Visit> void forEachTexel(const FieldData& field, const Visit& visit)
@@ -170,16 +170,16 @@ TEST_F(Bake, BoxDistancesAndGradientsEqualTheClosedForm)
                      }
                      const uint32_t word = wordAt(field, t);
                      const float q = field.info.scale / w;
-                     ASSERT_NEAR(kText.halfToReal(word), q, q * 5.2e-4f)
+                     ASSERT_NEAR(Text::halfToReal(word), q, q * 5.2e-4f)
                          << "face " << t.face << " texel " << t.x << "," << t.y; // half a step of a half
                      if (second < 1.02f * w) return;                             // the texel straddles an edge of the box
                      ++texels;
-                     const vec3 n = kText.faceCoordinates(t.face, vec3(wall == 0, wall == 1, wall == 2));
-                     const vec3 uvw = kText.faceCoordinates(t.face, d);
+                     const vec3 n = Text::faceCoordinates(t.face, vec3(wall == 0, wall == 1, wall == 2));
+                     const vec3 uvw = Text::faceCoordinates(t.face, d);
                      for (int i = 0; i < 2; ++i)
                      {
                          const float g = glm::clamp(n[i] / glm::dot(n, uvw) * 2.0f / 64.0f, -0.15f, 0.15f);
-                         const float stored = kText.unpackGradient(word >> (16 + 8 * i));
+                         const float stored = Text::unpackGradient(word >> (16 + 8 * i));
                          // A step of the byte at s = sqrt(g / 0.15) is 0.15 * 2 s / 127; half of it, and the root's rounding near zero.
                          if (std::abs(stored - g) > 0.6f * 0.15f * (2.0f * std::sqrt(std::abs(g) / 0.15f) + 1.0f / 127.0f) / 127.0f + 2e-5f)
                              ++wrongGradients;
@@ -399,7 +399,7 @@ TEST_F(Bake, FacesMeetWithoutASeam)
         const vec3 across = towards(field, a) + vec3(0.0f, 2.0f / float(n), 0.0f); // over the edge
         const Texel b = texelAt(field, across);
         ASSERT_EQ(b.face, 2);
-        const vec3 pa = towards(field, a) / kText.halfToReal(wordAt(field, a)), pb = towards(field, b) / kText.halfToReal(wordAt(field, b));
+        const vec3 pa = towards(field, a) / Text::halfToReal(wordAt(field, a)), pb = towards(field, b) / Text::halfToReal(wordAt(field, b));
         EXPECT_LT(glm::length(pa - pb), 6.0f / float(n)) << "row " << i;
     }
 }
@@ -417,7 +417,7 @@ TEST_F(Bake, OctahedralDistancesEqualTheClosedForm)
     for (uint32_t y = 0; y < n; ++y)
         for (uint32_t x = 0; x < n; ++x)
         {
-            const vec3 d = kText.directionFromOctahedral({(float(x) + 0.5f) / float(n), (float(y) + 0.5f) / float(n)});
+            const vec3 d = Text::directionFromOctahedral({(float(x) + 0.5f) / float(n), (float(y) + 0.5f) / float(n)});
             float r = INFINITY, second = INFINITY;
             for (int axis = 0; axis < 3; ++axis)
             {
@@ -428,7 +428,7 @@ TEST_F(Bake, OctahedralDistancesEqualTheClosedForm)
             }
             const uint32_t word = field.distance[y * n + x],
                            low16 = field.distance[n * n + (y / gpu::kLowFactor) * width + x / gpu::kLowFactor];
-            if (second > 1.1f * r && std::abs(kText.halfToReal(word) * field.info.scale - r) > 1.5e-3f * r) ++wrong;
+            if (second > 1.1f * r && std::abs(Text::halfToReal(word) * field.info.scale - r) > 1.5e-3f * r) ++wrong;
             EXPECT_LE(low16 & 0xffffu, word & 0xffffu);
             EXPECT_GE(low16 >> 16, word & 0xffffu);
         }

@@ -10,6 +10,7 @@
 #include "runtime/frame/environment_brdf.h"
 #include "shaders/shared/brdf.h"
 #include "shaders/shared/frame.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -26,15 +27,15 @@ template <class Light> FieldData probeOf(const Light& light, uint32_t chart = gp
     field.info.faceSize = 64;
     field.info.probeCount = 1;
     field.probes.resize(1);
-    Text text(field, {});
     const int n = int(field.info.faceSize), faces = chart == gpu::kChartCube ? 6 : 1;
     for (int face = 0; face < faces; ++face)
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x)
             {
                 const vec2 uv = (vec2(x, y) + 0.5f) / float(n);
-                const vec3 d = faces == 6 ? text.faceDirection(face, vec3(2.0f * uv - 1.0f, 1.0f)) : text.directionFromOctahedral(uv);
-                field.radiance.push_back(text.packRadiance(light(glm::normalize(d))));
+                const vec3 d =
+                    faces == 6 ? Pure<float>::faceDirection(face, vec3(2.0f * uv - 1.0f, 1.0f)) : Pure<float>::directionFromOctahedral(uv);
+                field.radiance.push_back(Pure<float>::packRadiance(light(glm::normalize(d))));
             }
     prefilterRadiance(field);
     return field;

@@ -1,4 +1,4 @@
-// The opponents' loop over probes: from a ray to its result. kBaseline (shared/baseline.h) says whose.
+// The opponents' loop over probes: from a ray to its result. kBaseline (baseline.h) says whose.
 //   B0       the supplement's: the eight corners of the grid cell of the origin, +3 mod 8, indices that wrap at the far borders
 //   B0+      the paper's re-pick of the cell as the ray proceeds, borders clamped
 //   others   the ranked list of the octree's leaf at the point reached, and when that is used up those a little further on; probes tried
@@ -110,15 +110,14 @@ SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at)
 /// The lists' best probe not yet tried at t. False: there is none.
 SCONCE_FN bool nextOfLists(SCONCE_INOUT(BaselineChoice) c, vec3 origin, vec3 direction, real t)
 {
-    if (t > c.tClear + real(1e-4) * real(field.diagonal))
+    if (t > c.tClear + kProgress * real(field.diagonal))
     {
         keepLastTried(c.tried);
         c.tClear = t;
     }
-    for (int list = 0; list < 3; ++list)
+    for (int list = 0; list < kLookAheads; ++list)
     {
-        real ahead = list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75));
-        uvec4 ranked = rankedProbesAt(origin + (t + ahead * real(field.voxel)) * direction, c.indexReads);
+        uvec4 ranked = rankedProbesAt(origin + (t + lookAhead(list) * real(field.voxel)) * direction, c.indexReads);
         for (int k = 0; k < kRanked; ++k)
         {
             if (wasTried(c.tried, ranked[k])) continue;
@@ -216,8 +215,7 @@ SCONCE_FN vec3 baselineRadiance(SCONCE_IN(TraceResult) hit)
 SCONCE_FN RayHit baselineQuery(vec3 origin, vec3 direction)
 {
     TraceResult r;
-    real sum = abs(origin.x) + abs(origin.y) + abs(origin.z) + dot(direction, direction);
-    if (!(sum < real(1e18)) || !(abs(dot(direction, direction) - real(1.0)) < real(1e-3)))
+    if (!canTrace(origin, direction))
     {
         r.status = kMiss;
         r.t = real(0.0);

@@ -1,0 +1,5 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "opponents/baseline.glsl"
+#define SCONCE_QUERY opponentQuery
+#include "trace_rays.glsl"

@@ -1,0 +1,33 @@
+// What a pass over the light field is bound to, and its constants: shaders/light_field.glsl declares them.
+#include "shared/light_field.h"
+#ifndef SCONCE_FIELD_PASSES_H
+#define SCONCE_FIELD_PASSES_H
+SCONCE_STRUCTS_BEGIN
+
+const uint kFieldBlockBinding = 0u;
+const uint kFieldProbesBinding = 1u;
+const uint kFieldOctreeBinding = 2u;
+const uint kFieldPatchesBinding = 3u;
+const uint kFieldFlagsId = 0u;
+const uint kHoldsRadianceId = 1u;
+const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
+const uint kOnOctahedron = 2u;
+
+// The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.
+#define SCONCE_FIELD_BLOCK \
+    LightFieldInfo field; \
+    TraceQuality quality; \
+    DeviceAddress distanceAddress; \
+    DeviceAddress radianceAddress; \
+    DeviceAddress irradianceAddress; \
+    DeviceAddress prefilteredAddress;
+#ifdef __cplusplus
+struct FieldBlock
+{
+    SCONCE_FIELD_BLOCK
+};
+SCONCE_CHECK_SIZE(FieldBlock, 256);
+#endif
+
+SCONCE_STRUCTS_END
+#endif

@@ -1,0 +1,81 @@
+// The interfaces of the passes of a frame: bindings of their set 1, ids of their constants, push constants.
+#include "shared/gpu_types.h"
+#ifndef SCONCE_FRAME_PASSES_H
+#define SCONCE_FRAME_PASSES_H
+SCONCE_STRUCTS_BEGIN
+
+// Of every pass: the host's G-buffer, the FrameView, and the lists of tiles of those that run on tiles.
+const uint kDepthBinding = 0u;
+const uint kNormalRoughnessBinding = 1u;
+const uint kBaseColorMetallicBinding = 2u;
+const uint kFrameBinding = 3u;
+const uint kTileBinding = 8u;
+
+// Of each pass.
+const uint kTraceLightBinding = 4u; // trace_glossy.comp
+const uint kTraceCountsBinding = 5u;
+const uint kFillLightBinding = 4u; // reconstruct.comp
+const uint kGatherDiffuseBinding = 4u; // gather_light.comp
+const uint kGatherRoughBinding = 5u;
+const uint kEnvironmentBrdfBinding = 6u;
+const uint kFilterFromBinding = 4u; // denoise.comp
+const uint kFilterToBinding = 5u;
+const uint kBlendLightBinding = 4u; // temporal.comp
+const uint kBlendBeforeBinding = 5u;
+const uint kBlendPointsBeforeBinding = 6u;
+const uint kBlendAfterBinding = 7u;
+const uint kBlendPointsAfterBinding = 9u;
+const uint kDirectEmissionBinding = 4u; // direct.comp
+const uint kDirectNormalBinding = 5u;
+const uint kDirectLightBinding = 6u;
+const uint kAreaNormalBinding = 4u; // area_light.comp
+const uint kAreaDiffuseBinding = 5u;
+const uint kComposeDirectBinding = 4u; // compose.comp
+const uint kComposeDiffuseBinding = 5u;
+const uint kComposeRoughBinding = 6u;
+const uint kComposeGlossyBinding = 7u;
+const uint kComposeMirrorBinding = 8u;
+const uint kComposeBeautyBinding = 9u;
+const uint kComposeDiffuseLayerBinding = 10u;
+const uint kComposeGlossyLayerBinding = 11u;
+
+// Constants, numbered over all passes, after the light field's (field_passes.h).
+const uint kTiledId = 2u;
+const uint kTermId = 3u;
+const uint kEveryLogId = 4u; // trace_glossy.comp, reconstruct.comp, classify_tiles.comp
+const uint kCountId = 5u;    // trace_glossy.comp
+const uint kBlendedId = 6u;  // denoise.comp
+const uint kListId = 7u;     // gather_light.comp
+const uint kGatherDiffuseId = 8u;
+const uint kGatherRoughId = 9u;
+const uint kByPatchesId = 10u;
+const uint kMadeId = 11u; // compose.comp
+const uint kDiffuseLayerId = 12u;
+const uint kGlossyLayerId = 13u;
+
+struct DenoisePush
+{
+    int stride;          // pixels between taps
+    int followRoughness; // 1: the reach shrinks with roughness, to nothing for a mirror
+};
+SCONCE_CHECK_SIZE(DenoisePush, 8);
+
+struct DirectPush
+{
+    vec3 origin;     // of field space, world metres
+    float scale;     // metres per field unit
+    vec3 sky;        // W/(m^2 sr)
+    uint lightCount; // delta lights at the front of the list
+};
+SCONCE_CHECK_SIZE(DirectPush, 32);
+
+struct AreaPush
+{
+    vec3 origin;  // of field space, world metres
+    float scale;  // metres per field unit
+    uint samples; // of the emitters, and as many of the sky, a pixel
+};
+SCONCE_CHECK_SIZE(AreaPush, 20);
+
+SCONCE_STRUCTS_END
+#endif
