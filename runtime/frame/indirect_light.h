@@ -20,10 +20,10 @@ public:
     {
         uint32_t width = 0, height = 0; // pixels, 1..16384
         IndirectEffects effects;
-        uint32_t traceEvery = 1; // trace one pixel of 1, 2, 4, 8 or 16, of reflections and of traced diffuse light, and make the rest from
-                                 // it: shaders/reconstruct.comp. Mirrors are traced at every pixel
-        bool counts = false;     // write what each pixel's ray cost: an image of 16 bytes a pixel
-        Spirv glossyShader;      // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
+        uint32_t traceEvery = knobs::traceEvery.value; // trace one pixel of so many, of reflections and of traced diffuse light, and make
+                                                       // the rest from it: shaders/reconstruct.comp. Mirrors are traced at every pixel
+        bool counts = false; // write what each pixel's ray cost: an image of 16 bytes a pixel
+        Spirv glossyShader;  // SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its baselines through it.
     };
     /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, deviceFailure.
     static Result<IndirectLight> create(Gpu& gpu, const LightField& field, const Desc& desc);
