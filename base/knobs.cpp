@@ -24,7 +24,13 @@ std::string knobText(double value)
 {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+    std::string shown = text;
+    if (const size_t e = shown.find('e'); e != std::string::npos) // 1e-6, not 1e-06; 1e6, not 1e+06
+    {
+        const size_t sign = e + 1, digit = shown.find_first_not_of("+-0", sign);
+        shown.replace(sign, digit - sign, shown[sign] == '-' ? "-" : "");
+    }
+    return shown;
 }
 
 std::string knobText(float value)

@@ -70,6 +70,7 @@ TEST(Knobs, AreSpelledAsPeopleDo)
     EXPECT_EQ(rangeText(knobs::placeSeed), "0 to 2^64-1");
     EXPECT_EQ(rangeText(knobs::frameSeed), "0 to 2^32-1");
     EXPECT_EQ(rangeText(knobs::light), "0 or more");
+    EXPECT_EQ(rangeText(knobs::exposure), "1e-6 to 1e6");
     EXPECT_EQ(rangeText(knobs::goalTime), "above 0 milliseconds");
     EXPECT_EQ(rangeText(knobs::temporal), "on, off");
     EXPECT_EQ(rangeText(knobs::resolution), "64 to 2048 texels, power of two, or multiple of 32 with cube faces");

@@ -15,7 +15,7 @@ namespace
 
 std::pair<float, float> pairOf(uint32_t x, uint32_t y, uint32_t sample)
 {
-    const vec2 pair = gpu::randomPair({x, y}, sample, 0, 1);
+    const glm::vec2 pair = gpu::randomPair({x, y}, sample, 0, 1);
     return {pair.x, pair.y};
 }
 

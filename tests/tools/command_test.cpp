@@ -81,24 +81,26 @@ TEST(Command, HelpOfEveryOptionStatesItsDefault)
     EXPECT_NE(sconceCommand({"--version"}).out.find('.'), std::string::npos);
 }
 
-/// "default: ..." as the help of the option says it, whatever the lines are broken into; empty: there is no such option.
+/// What --help says of "COMMAND --OPTION", in one line; empty: there is no such option.
 std::string helpOf(const std::string& commandAndOption)
 {
     const size_t space = commandAndOption.find(' ');
-    const std::string help = sconceCommand({commandAndOption.substr(0, space), "--help"}).out;
-    const std::string option = commandAndOption.substr(space + 1);
-    std::istringstream words(help);
-    std::string text, word;
-    while (words >> word) text += " " + word;
-    for (size_t at = 0; (at = text.find(option, at)) != std::string::npos; at += option.size())
+    std::istringstream lines(sconceCommand({commandAndOption.substr(0, space), "--help"}).out);
+    std::string entry;
+    bool found = false;
+    for (std::string line; std::getline(lines, line);)
     {
-        const char after = text[at + option.size()];
-        const char before = text[at - 1];
-        const size_t end = text.find(" (default: ", at);
-        if ((before == ' ' || before == ',') && (after == ' ' || after == ',') && end != std::string::npos)
-            return text.substr(at, text.find(')', end + 1) + 1 - at);
+        std::istringstream words(line);
+        std::string word;
+        if (line.starts_with("  -"))
+        {
+            if (found) break;
+            words >> word;
+            found = ("," + word + ",").find("," + commandAndOption.substr(space + 1) + ",") != std::string::npos;
+        }
+        while (found && words >> word) entry += (entry.empty() ? "" : " ") + word;
     }
-    return {};
+    return entry;
 }
 
 TEST(Command, KnobsAreWhatHelpSays)
