@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "placement/distance_field.h"
@@ -59,7 +60,7 @@ inline constexpr float kEnclosedShare = 0.12f; // of the rays between the horizo
 inline constexpr float kIndoorEnclosedShare = 0.6f;
 inline constexpr float kIndoors = 0.99f;    // of all rays
 inline constexpr float kGroundShare = 0.4f; // of the rays within 45 degrees of straight down; one half at the open front of a box
-inline constexpr uint32_t kDefaultVoxels = 12u << 20;
+inline constexpr uint32_t kDefaultVoxels = knobs::distanceVoxels.value;
 
 /// @param inside  world points, metres, that say which space counts; empty: the cameras, else the largest enclosed region
 /// @param voxels  most cells of the distance field

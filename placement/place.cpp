@@ -28,7 +28,9 @@ constexpr size_t kDraws = 8;      // samples drawn for each one that is kept
 constexpr double kRayShare = 0.8; // of the surfels where rays hit; the rest evenly by area
 constexpr float kComfort = 0.09f; // of the probes' spacing, metres from surfaces
 constexpr size_t kTableBytes = size_t(400) << 20;
-constexpr uint32_t kGuessedCount = 64; // for the spacing while the count is open
+static_assert(knobs::count.most == kMostProbes);
+static_assert(knobs::method.is(knobs::kMethods[size_t(PlaceSettings::Method::sdf)]) && // the enums are in the choices' order
+              knobs::refine.is(knobs::kRefines[size_t(Refine::gradient)]));
 
 size_t numberOf(const std::vector<Pin>& pins, Pin::Kind kind)
 {
@@ -38,21 +40,12 @@ size_t numberOf(const std::vector<Pin>& pins, Pin::Kind kind)
 std::string faultOf(const PlaceSettings& settings)
 {
     const bool ownGrid = settings.grid != glm::ivec3(0);
-    if (settings.count > kMostProbes) return fmt::format("count is {}; give 0 to {}.", settings.count, kMostProbes);
-    if (!(settings.coverage > 0.0f && settings.coverage <= 1.0f))
-        return fmt::format("coverage is {}; give a share above 0 and at most 1.", settings.coverage);
-    if (!(settings.clearance >= 0.0f && std::isfinite(settings.clearance)))
-        return fmt::format("clearance is {} m; give 0 (derived) or a positive length.", settings.clearance);
-    if (settings.voxels < 4096 || settings.voxels > 268'435'456)
-        return fmt::format("voxels is {}; give 4096 to 268435456.", settings.voxels);
-    if (settings.candidates < 100 || settings.candidates > 100'000)
-        return fmt::format("candidates is {}; give 100 to 100000.", settings.candidates);
-    if (settings.surfels < 1000 || settings.surfels > 1'000'000)
-        return fmt::format("surfels is {}; give 1000 to 1000000.", settings.surfels);
-    if (settings.refineRounds > 1000) return fmt::format("refineRounds is {}; give 0 to 1000.", settings.refineRounds);
-    if (settings.relocateRounds > 1000) return fmt::format("relocateRounds is {}; give 0 to 1000.", settings.relocateRounds);
-    if (settings.refineSurfels < 1000 || settings.refineSurfels > 1'000'000)
-        return fmt::format("refineSurfels is {}; give 1000 to 1000000.", settings.refineSurfels);
+    const std::string fault = firstFault(
+        {faultOf(knobs::count, settings.count), faultOf(knobs::coverage, settings.coverage), faultOf(knobs::clearance, settings.clearance),
+         faultOf(knobs::distanceVoxels, settings.voxels), faultOf(knobs::candidates, settings.candidates),
+         faultOf(knobs::surfels, settings.surfels), faultOf(knobs::refineRounds, settings.refineRounds),
+         faultOf(knobs::relocateRounds, settings.relocateRounds), faultOf(knobs::refineSurfels, settings.refineSurfels)});
+    if (!fault.empty()) return fault + ".";
     const size_t kept = numberOf(settings.pins, Pin::Kind::keep), added = numberOf(settings.pins, Pin::Kind::add);
     if (settings.method == PlaceSettings::Method::grid && !settings.pins.empty()) return "pins are given but a grid has no free choice.";
     if (settings.count != 0 && kept > settings.count)
@@ -81,7 +74,7 @@ ProbeSet placeGrid(const FreeSpace& space, const PlaceSettings& settings, PlaceR
 {
     ProbeSet set;
     const glm::ivec3 shape =
-        settings.grid != glm::ivec3(0) ? settings.grid : gridShape(space.bounds, settings.count ? settings.count : kGuessedCount);
+        settings.grid != glm::ivec3(0) ? settings.grid : gridShape(space.bounds, settings.count ? settings.count : knobs::kGridCount);
     set.grid = gridIn(space.bounds, shape);
     for (int z = 0; z < shape.z; ++z)
         for (int y = 0; y < shape.y; ++y)
@@ -203,7 +196,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     const size_t pinned = candidates.size();
     const uint32_t count = settings.count ? settings.count + uint32_t(numberOf(settings.pins, Pin::Kind::add)) : 0;
     // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
-    const float comfort = std::max(clearance, kComfort * probeSpacing(space, count ? count : kGuessedCount));
+    const float comfort = std::max(clearance, kComfort * probeSpacing(space, count ? count : knobs::kGridCount));
     report.comfort = comfort;
     if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
     const double planned = std::max(double(settings.candidates), 3.5 * double(count)); // many probes need many candidates
@@ -220,7 +213,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                  "clearance, forbid less, or raise the number of voxels (a cell is {} m).",
                                  scene.name, clearance, space.field.voxel)};
 
-    const float spacing = probeSpacing(space, count ? count : kGuessedCount);
+    const float spacing = probeSpacing(space, count ? count : knobs::kGridCount);
     const size_t budget = size_t(std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0)));
     std::vector<Surfel> surfels = mixedSurfels(scene, visibility, space, budget / 4, settings.seed);
     if (surfels.empty())

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/knobs.h"
 #include "base/limits.h"
 #include "base/progress.h"
 #include "base/result.h"
@@ -17,6 +18,7 @@
 namespace sconce
 {
 
+/// Ranges and prices: base/knobs.h.
 struct PlaceSettings
 {
     enum class Method
@@ -25,22 +27,22 @@ struct PlaceSettings
         balls, // the same with the skeleton of ball shrinking
         grid   // uniform grid in the bounds of the reachable space; points in solid stay
     };
-    Method method = Method::sdf;
-    glm::ivec3 grid{0};       // grid: points along each axis, product 1..65,535; 0: chosen from `count`
-    uint32_t count = 0;       // probes, 0..65,535; 0: the fewest that reach `coverage`; a grid takes 64
-    float coverage = 0.995f;  // (0,1], share of the surface points that rays hit; when count is 0, grid apart
+    Method method = Method(knobs::method.place());
+    glm::ivec3 grid{0};                     // grid: points along each axis, product 1..65,535; 0: chosen from `count`
+    uint32_t count = knobs::count.value;    // probes; 0: the fewest that reach `coverage`; a grid takes 64
+    float coverage = knobs::coverage.value; // share of the surface points that rays hit; when count is 0, grid apart
     std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
     std::vector<Pin> pins;    // positions that the user decides; not with a grid. Kept ones count as probes of `count`, added ones don't
-    uint64_t seed = 1;        // of every random choice; same scene, settings and seed: same bytes
-    float clearance = 0.0f;   // metres from every surface, sdf; 0: one cell of the distance field
-    uint32_t voxels = kDefaultVoxels; // most cells of the distance field, 4,096..268,435,456; cost: about 20 bytes and 0.3 us each
-    uint32_t candidates = 2800;       // positions to choose from, 100..100,000; few cost coverage (500 instead of 1,500: 20 points)
-    Refine refine = Refine::gradient; // how positions are moved after the choice, grid apart; the others cost more and gain nothing
-    uint32_t refineRounds = 6;        // times through all probes, 0..1,000; each costs 8 views a probe, or 9
-    uint32_t relocateRounds = 3; // times each probe is tried where no other sees, after the choice, 0..1,000; each costs 32 views a probe
-    uint32_t refineSurfels = 32000; // surface samples to relocate and refine by, 1,000..1,000,000; up to half where few probes see
-    bool explain = false;           // fills PlaceReport::picture
-    uint32_t surfels = 48000;       // surface samples to choose by, the same; cost: 0.1 us times candidates times surfels
+    uint64_t seed = knobs::placeSeed.value;                // of every random choice; same scene, settings and seed: same bytes
+    float clearance = knobs::clearance.value;              // metres from every surface, sdf; 0: one cell of the distance field
+    uint32_t voxels = knobs::distanceVoxels.value;         // most cells of the distance field
+    uint32_t candidates = knobs::candidates.value;         // positions to choose from
+    Refine refine = Refine(knobs::refine.place());         // how positions are moved after the choice, grid apart
+    uint32_t refineRounds = knobs::refineRounds.value;     // times through all probes
+    uint32_t relocateRounds = knobs::relocateRounds.value; // times each probe is tried where no other sees, after the choice
+    uint32_t refineSurfels = knobs::refineSurfels.value;   // surface samples to relocate and refine by; up to half where few probes see
+    bool explain = false;                                  // fills PlaceReport::picture
+    uint32_t surfels = knobs::surfels.value;               // surface samples to choose by
 };
 
 struct PlaceReport

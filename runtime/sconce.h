@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "runtime/field/quality.h"
@@ -99,11 +100,11 @@ class IndirectLight
 public:
     struct Desc
     {
-        uint32_t width = 0, height = 0; // pixels, 1 to the device's largest image
-        IndirectEffects effects;        // LightField::effectsOfFrames() has those that the scene calls for
-        uint32_t traceEvery = 1; // trace one pixel of 1, 2, 4, 8 or 16, of reflections and of traced diffuse light, and make the rest from
-                                 // it: shaders/reconstruct.comp. Mirrors are traced at every pixel
-        bool counts = false;     // write what each pixel's ray cost: an image of 16 bytes a pixel
+        uint32_t width = 0, height = 0;                // pixels, 1 to the device's largest image
+        IndirectEffects effects;                       // LightField::effectsOfFrames() has those that the scene calls for
+        uint32_t traceEvery = knobs::traceEvery.value; // trace one pixel of so many, of reflections and of traced diffuse light, and make
+                                                       // the rest from it: shaders/reconstruct.comp. Mirrors are traced at every pixel
+        bool counts = false;                           // write what each pixel's ray cost: an image of 16 bytes a pixel
     };
     /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL; all null when the effect is off.
     struct Output
@@ -170,7 +171,7 @@ private:
     std::shared_ptr<State> shared;
 };
 
-/// What a light field is baked with. The command's `bake` has further knobs.
+/// What a light field is baked with. Ranges and prices: knobs above. The command's `bake` has further ones.
 struct BakeDesc
 {
     uint32_t resolution = 512;    // texels a side of an octahedral map; cube faces have half of it; memory grows with its square

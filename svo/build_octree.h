@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "shaders/shared/light_field.h"
@@ -13,10 +14,10 @@ namespace sconce
 
 struct OctreeSettings
 {
-    // Finest voxels along the longest side of the bounds, 8..256; time and memory grow with the square of it. 0: 128 up to 54 probes, then
+    // Finest voxels along the longest side of the bounds; time and memory grow with the square of it. 0: 128 up to 54 probes, then
     // growing with the root of their number to 256, so that the bytes a probe stay what they are.
-    int voxels = 0;
-    int topShift = 2; // levels below the top grid, 1..6: a descent reads at most one texel more
+    int voxels = knobs::octreeVoxels.value;
+    int topShift = knobs::topShift.value; // levels below the top grid: a descent reads at most one texel more
 };
 
 /// The probes' cube-face distance maps, as the octree needs them. Word layout: shaders/shared/light_field.h.

@@ -127,9 +127,9 @@ std::string argumentFault(const ProbeMaps& maps, const OctreeSettings& settings)
     if (maps.probes.size() > kMostProbes)
         return std::to_string(maps.probes.size()) + " probes are more than the " + std::to_string(kMostProbes) +
                " an octree can index; place fewer";
-    if ((settings.voxels != 0 && settings.voxels < 8) || settings.voxels > 256 || settings.topShift < 1 || settings.topShift > 6)
-        return "octree settings: voxels " + std::to_string(settings.voxels) + " must be 0 or 8..256 and topShift " +
-               std::to_string(settings.topShift) + " 1..6";
+    if (const std::string fault = firstFault({faultOf(knobs::octreeVoxels, settings.voxels), faultOf(knobs::topShift, settings.topShift)});
+        !fault.empty())
+        return "octree settings: " + fault;
     if (maps.info.chart != gpu::kChartCube) return "the octree judges visibility by cube-face maps; bake with the cube chart";
     return {};
 }

@@ -21,7 +21,7 @@ struct BakeOptions
     SceneOptions scene;
     BakeSettings settings;
     std::string probes, output, device, effects = "auto";
-    uint64_t memoryMb = 0;
+    uint64_t memoryMb = knobs::deviceMebibytes.value;
     QualityOption quality;
 };
 
@@ -102,34 +102,17 @@ void addBakeCommand(CLI::App& app, Context& context)
     options->scene.add(bake);
     bake->add_option("--probes", options->probes, "probes.json of `sconce place` (required)")->required()->type_name("FILE");
     bake->add_option("-o,--output", options->output, ".sconce file to write (required)")->required()->type_name("FILE");
+    addKnob(bake, "--resolution", settings.resolution, knobs::resolution, "TEXELS");
+    addKnob(bake, "--bounces", settings.bounces, knobs::bounces);
+    addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
+    addChoice(bake, "--chart", settings.chart, knobs::chart);
+    addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
     bake->add_option(
-            "--resolution", settings.resolution,
-            "Side of an octahedral map in texels; the cube chart's faces have half of it (416: the memory of an octahedral map of "
-            "512); memory grows with its square (default: 512; range: 64 to 2048, power of two, or multiple of 32 with cube faces)")
-        ->check(unlisted(CLI::Range(64u, 2048u)))
-        ->type_name("TEXELS");
-    bake->add_option("--bounces", settings.bounces,
-                     "Times the baked light is re-injected; each costs one more pass over every probe (default: 2; range: 0 to 64)")
-        ->check(unlisted(CLI::Range(0u, 64u)))
-        ->type_name("N");
-    bake->add_option("--converged", settings.converged,
-                     "Stops before --bounces when one adds less than this share of all light (default: 0, never; range: 0 to 1)")
-        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
-        ->type_name("SHARE");
-    const std::map<std::string, uint32_t> charts{{"cube", gpu::kChartCube}, {"octahedral", gpu::kChartOctahedral}};
-    bake->add_option("--chart", settings.chart,
-                     "cube: six faces a probe; octahedral: one map a probe, for the tracers b0, b0plus and b0plus-octree (default: cube)")
-        ->transform(unlisted(CLI::CheckedTransformer(charts)))
-        ->type_name("cube|octahedral");
-    bake->add_option("--memory", options->memoryMb,
-                     "Budget of device memory, MiB; too little is refused with the number needed (default: 80 % of the device's; range: 1 "
-                     "to 1048576)")
-        ->check(unlisted(CLI::Range(uint64_t(1), uint64_t(1) << 20)))
-        ->type_name("MIB");
-    bake->add_option("--effects", options->effects,
-                     "auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them; -NAME takes one away: "
-                     "auto,-sun bakes no sunlight. Without glossy and mirror the file holds no radiance for traced rays: half of its size "
-                     "(default: auto)")
+            "--effects", options->effects,
+            described("auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them; -NAME takes one "
+                      "away: auto,-sun bakes no sunlight. Without glossy and mirror the file holds no radiance for traced rays: "
+                      "half of its size",
+                      options->effects))
         ->type_name("auto|all|none|LIST");
     addDevice(bake, options->device);
     options->quality.add(bake);

@@ -22,6 +22,8 @@ namespace sconce::tools
 namespace
 {
 
+constexpr const char* kDefaultScene = "cornell-glossy";
+
 struct BenchOptions
 {
     SceneOptions scene; // its light; the scenes' names are below
@@ -30,7 +32,8 @@ struct BenchOptions
     std::string output = "out/bench", device;
     BenchSettings settings;
     PlanSettings plan;
-    std::string check, baseline; // files of a guard
+    uint32_t groupMebibytes = knobs::groupMebibytes.value; // settings.groupBytes
+    std::string check, baseline;                           // files of a guard
 };
 
 /// Probes of the default points, where --probes isn't given: those of the papers' tables for their scenes.
@@ -257,64 +260,46 @@ void addBenchCommand(CLI::App& app, Context& context)
         addCommand(app, context, "bench", "Measures what accuracy costs in time and memory: ours with every knob, opponents, path tracer");
     auto options = std::make_shared<BenchOptions>();
     BenchSettings& settings = options->settings;
-    bench->add_option("SCENE", options->scenes, "Files or built-in names (default: cornell-glossy)")->type_name("...");
+    bench->add_option("SCENE", options->scenes, described("Files or built-in names", std::string(kDefaultScene)))->type_name("...");
     bench
-        ->add_option(
-            "-o,--output", options->output,
-            "Folder of results.json, results.csv, images/ and cache/; what it holds already is not measured again (default: out/bench)")
+        ->add_option("-o,--output", options->output,
+                     described("Folder of results.json, results.csv, images/ and cache/; what it holds already is not measured again",
+                               options->output))
         ->type_name("DIR");
     options->scene.addLight(bench);
     options->camera.add(bench);
     addSize(bench, settings.width, settings.height);
-    bench->add_option("--probes", options->plan.probes, "Of the default points (default: by scene, 54 for others; range: 1 to 65535)")
-        ->check(unlisted(CLI::Range(1u, kMostProbes)))
-        ->type_name("N");
-    bench
-        ->add_option("--resolution", options->plan.ours.resolution,
-                     "Of our default points; the opponents' is the next power of two (default: 416; range: 64 to 1024, multiple of 32)")
-        ->check(unlisted(CLI::Range(64u, 1024u)))
-        ->type_name("TEXELS");
-    bench
-        ->add_option("--bounces", options->plan.ours.bounces,
-                     "Of the default points and of the path tracer; the reference has 8 (default: 2; range: 0 to 8)")
-        ->check(unlisted(CLI::Range(0u, 8u)))
-        ->type_name("N");
-    bench->add_option("--knobs", options->plan.knobs, "Sweep only these, separated by commas (default: all)")
+    addKnob(bench, "--probes", options->plan.probes, knobs::benchProbes);
+    addKnob(bench, "--resolution", options->plan.ours.resolution, knobs::benchResolution, "TEXELS");
+    addKnob(bench, "--bounces", options->plan.ours.bounces, knobs::benchBounces);
+    bench->add_option("--knobs", options->plan.knobs, described("Sweep only these, separated by commas", words("all")))
         ->delimiter(',')
         ->type_name("LIST");
-    bench->add_flag("--methods-only", options->plan.methodsOnly, "Measure every method's default point alone (default: with its knobs)");
-    bench->add_option("--roughness", options->plan.roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
-        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
-        ->type_name("R");
-    bench->add_option("--rays", settings.rays, "Glossy rays that are judged against Embree (default: 50000; range: 100 to 10000000)")
-        ->check(unlisted(CLI::Range(100u, 10000000u)))
-        ->type_name("N");
-    bench->add_option("--frames", settings.frames, "Timed frames of every point, in turns (default: 20; range: 1 to 1000)")
-        ->check(unlisted(CLI::Range(1u, 1000u)))
-        ->type_name("N");
+    bench->add_flag("--methods-only", options->plan.methodsOnly,
+                    described("Measure every method's default point alone", words("with its knobs")));
+    addKnob(bench, "--roughness", options->plan.roughness, knobs::roughness, "R");
+    addKnob(bench, "--rays", settings.rays, knobs::judgedRays);
+    addKnob(bench, "--frames", settings.frames, knobs::timedFrames);
+    addKnob(bench, "--group-memory", options->groupMebibytes, knobs::groupMebibytes, "MIB");
     bench
-        ->add_option_function<uint32_t>(
-            "--group-memory", [&settings](uint32_t mebibytes) { settings.groupBytes = uint64_t(mebibytes) << 20; },
-            "Light fields timed in turns stand on the device together, up to so many MiB (default: 2048; range: 1 to 1048576)")
-        ->check(unlisted(CLI::Range(1u, 1048576u)))
-        ->type_name("MIB");
-    bench
-        ->add_option("--check", options->check,
-                     "Measure what this baseline holds, and exit 1 when reads, wrong rays, errors or bytes are worse by more than its "
-                     "margins (default: none)")
+        ->add_option(
+            "--check", options->check,
+            described("Measure what this baseline holds, and exit 1 when reads, wrong rays, errors or bytes are worse by more than "
+                      "its margins",
+                      words("none")))
         ->type_name("FILE");
     bench
-        ->add_option("--baseline", options->baseline, "Write such a baseline of the scenes, ours alone, instead of results (default: none)")
+        ->add_option("--baseline", options->baseline,
+                     described("Write such a baseline of the scenes, ours alone, instead of results", words("none")))
         ->type_name("FILE");
-    bench->add_option("--spp", settings.referencePaths, "Paths a pixel of the reference (default: 256; range: 2 to 1048576)")
-        ->check(unlisted(CLI::Range(2u, 1048576u)))
-        ->type_name("N");
-    bench->add_option("--seed", settings.seed, "Of rays and paths (default: 1; range: 0 to 2^64-1)")->type_name("N");
+    addKnob(bench, "--spp", settings.referencePaths, knobs::referencePaths);
+    addKnob(bench, "--seed", settings.seed, knobs::benchSeed);
     addDevice(bench, options->device);
     onChosen(bench, context, options,
              [](BenchOptions& chosen, const Context& given)
              {
-                 if (chosen.scenes.empty()) chosen.scenes = {"cornell-glossy"};
+                 if (chosen.scenes.empty()) chosen.scenes = {kDefaultScene};
+                 chosen.settings.groupBytes = uint64_t(chosen.groupMebibytes) << 20;
                  return runBench(chosen, given);
              });
 }

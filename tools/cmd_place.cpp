@@ -20,8 +20,8 @@ struct PlaceOptions
     std::string output;
     std::string explain;
     std::string pins;
-    uint64_t memory = 0;       // bytes; 0: no budget
-    uint32_t resolution = 512; // what the budget is counted for
+    uint64_t memory = knobs::mapBytes.value;       // bytes; 0: no budget
+    uint32_t resolution = knobs::resolution.value; // what the budget is counted for
     QualityOption quality;
 };
 
@@ -118,15 +118,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
     PlaceSettings& settings = options->settings;
     options->scene.add(command);
     command->add_option("-o,--output", options->output, "probes.json to write (required)")->required()->type_name("FILE");
-    const std::map<std::string, PlaceSettings::Method> methods{
-        {"sdf", PlaceSettings::Method::sdf}, {"balls", PlaceSettings::Method::balls}, {"grid", PlaceSettings::Method::grid}};
-    command
-        ->add_option(
-            "--method", settings.method,
-            "sdf: skeleton of the distance field; balls: skeleton by ball shrinking; grid: uniform grid in the reachable space (default: "
-            "sdf)")
-        ->transform(unlisted(CLI::CheckedTransformer(methods)))
-        ->type_name("sdf|balls|grid");
+    addChoice(command, "--method", settings.method, knobs::method);
     command
         ->add_option_function<std::string>(
             "--grid",
@@ -137,37 +129,21 @@ void addPlaceCommand(CLI::App& app, Context& context)
                 settings.grid = {int((*n)[0]), int((*n)[1]), int((*n)[2])};
                 settings.method = PlaceSettings::Method::grid;
             },
-            "Probes along each axis of the grid; implies --method grid (default: chosen from --count; range: product 1 to 65535)")
+            described("Probes along each axis of the grid; implies --method grid", words("chosen from --count"),
+                      "in all " + rangeText(knobs::count)))
         ->type_name("NxNxN");
-    CLI::Option* count =
-        command->add_option("--count", settings.count, "Probes (default: sdf the fewest that reach --coverage, grid 64; range: 1 to 65535)")
-            ->check(unlisted(CLI::Range(1u, kMostProbes)))
-            ->type_name("N");
-    command
-        ->add_option(
-            "--memory", options->memory,
-            "As many probes as fit these bytes of maps at --resolution, cube faces; the index of a few MB comes on top (default: no "
-            "budget; range: what one probe takes to 2^64-1)")
-        ->excludes(count)
-        ->check(unlisted(CLI::Range(uint64_t(1), ~uint64_t(0))))
-        ->type_name("BYTES");
-    command
-        ->add_option("--resolution", options->resolution,
-                     "That the field will be baked with; only --memory asks (default: 512; range: 64 to 2048)")
-        ->check(unlisted(CLI::Range(64u, 2048u)))
-        ->type_name("TEXELS");
+    CLI::Option* count = addKnob(command, "--count", settings.count, knobs::count);
+    addKnob(command, "--memory", options->memory, knobs::mapBytes, "BYTES")->excludes(count);
+    addKnob(command, "--resolution", options->resolution, knobs::resolution, "TEXELS",
+            "That the field will be baked with; only --memory asks");
     command
         ->add_option(
             "--pin", options->pins,
-            "Positions you decide, in the form of probes.json: \"pin\": \"keep\" stays (as does a probe that says nothing), \"add\" "
-            "stays beside --count, \"forbid\" with \"radius\" in metres allows no probe there; not with a grid (default: none)")
+            described("Positions you decide, in the form of probes.json: \"pin\": \"keep\" stays (as does a probe that says nothing), "
+                      "\"add\" stays beside --count, \"forbid\" with \"radius\" in metres allows no probe there; not with a grid",
+                      words("none")))
         ->type_name("FILE");
-    command
-        ->add_option("--coverage", settings.coverage,
-                     "Share of the surface points that rays hit which some probe must see, when --count is not given (default: 0.995; "
-                     "range: 0.01 to 1)")
-        ->check(unlisted(CLI::Range(0.01f, 1.0f)))
-        ->type_name("F");
+    addKnob(command, "--coverage", settings.coverage, knobs::coverage, "F", knobs::coverage.what);
     command
         ->add_option_function<std::vector<std::string>>(
             "--inside",
@@ -180,24 +156,19 @@ void addPlaceCommand(CLI::App& app, Context& context)
                     settings.inside.emplace_back((*n)[0], (*n)[1], (*n)[2]);
                 }
             },
-            "A point in the space that counts, metres; may be given again (default: the cameras, else the largest enclosed region)")
+            described("A point in the space that counts, metres; may be given again",
+                      words("the cameras, else the largest enclosed region")))
         ->expected(1)
         ->take_all()
         ->type_name("X,Y,Z");
     command
         ->add_option_function<std::string>(
             "--explain", [options = options.get()](const std::string& file) { options->explain = file, options->settings.explain = true; },
-            "Also writes a picture: plan and section, probes white, surface seen well green, badly yellow, not at all red (default: none)")
+            described("Also writes a picture: plan and section, probes white, surface seen well green, badly yellow, not at all red",
+                      words("none")))
         ->type_name("FILE.png");
-    command
-        ->add_option("--seed", settings.seed, "Of every random choice; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")
-        ->type_name("N");
-    command
-        ->add_option(
-            "--clearance", settings.clearance,
-            "Least distance of a probe from every surface, sdf, metres (default: one cell of the distance field; range: 0 to 1000)")
-        ->check(unlisted(CLI::Range(0.0f, 1000.0f)))
-        ->type_name("METRES");
+    addKnob(command, "--seed", settings.seed, knobs::placeSeed);
+    addKnob(command, "--clearance", settings.clearance, knobs::clearance, "METRES");
     options->quality.add(command);
     onChosen(command, context, options, runPlace);
 }

@@ -137,21 +137,11 @@ void addReferenceCommands(CLI::App& app, Context& context)
     options->scene.add(reference);
     options->camera.add(reference);
     addSize(reference, settings.width, settings.height);
-    reference
-        ->add_option("--spp", settings.samples,
-                     "Paths a pixel; noise falls with the square root, time grows in proportion (default: 64; range: 1 to 1048576)")
-        ->check(unlisted(CLI::Range(1u, 1048576u)))
-        ->type_name("N");
-    reference->add_option("--bounces", settings.bounces, "As of bake: a path scatters at most N+2 times (default: 2; range: 0 to 64)")
-        ->check(unlisted(CLI::Range(0u, 64u)))
-        ->type_name("N");
-    reference->add_option("--roughness", settings.roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
-        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
-        ->type_name("R");
-    reference->add_option("--seed", settings.seed, "Of the paths; the same seed gives the same bytes (default: 1; range: 0 to 2^64-1)")
-        ->type_name("N");
-    reference->add_flag("--pixel-centre", settings.pixelCentre,
-                        "Every path starts at its pixel's centre as a rasteriser's, edges are not smoothed (default: off)");
+    addKnob(reference, "--spp", settings.samples, knobs::paths);
+    addKnob(reference, "--bounces", settings.bounces, knobs::pathBounces);
+    addKnob(reference, "--roughness", settings.roughness, knobs::roughness, "R");
+    addKnob(reference, "--seed", settings.seed, knobs::pathSeed);
+    addSwitch(reference, "--pixel-centre", settings.pixelCentre, knobs::pixelCentre);
     options->pictures.add(reference, kReferenceLayers);
     onChosen(reference, context, options, runReference);
 
@@ -161,29 +151,30 @@ void addReferenceCommands(CLI::App& app, Context& context)
     compare->add_option("PICTURE", compareOptions->picture, "EXR that is judged")->required()->type_name("");
     compare->add_option("REFERENCE", compareOptions->reference, "EXR that is the truth")->required()->type_name("");
     compare
-        ->add_option("--metric", compareOptions->metrics,
-                     "Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), separated by commas (default: all)")
+        ->add_option(
+            "--metric", compareOptions->metrics,
+            described("Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), separated by commas", words("all")))
         ->type_name("LIST");
     compare
         ->add_option("--fail-above", compareOptions->limits,
-                     "Exit 1 when the metric is above X (psnr: below X); may be given again (default: no limit)")
+                     described("Exit 1 when the metric is above X (psnr: below X); may be given again", words("no limit")))
         ->expected(1)
         ->take_all()
         ->type_name("METRIC=X");
-    compare->add_option("--layer", compareOptions->layer, "Layer that is compared (default: beauty)")->type_name("NAME");
+    compare->add_option("--layer", compareOptions->layer, described("Layer that is compared", compareOptions->layer))->type_name("NAME");
     compare
         ->add_option("--exposure", compareOptions->exposure,
-                     "For psnr, flip and --side-by-side (default: from the reference's log-average, flip over a sweep of exposures; range: "
-                     "1e-6 to 1e6)")
-        ->check(unlisted(CLI::Range(1e-6f, 1e6f)))
+                     described("For psnr, flip and --side-by-side",
+                               words("from the reference's log-average, flip over a sweep of exposures"), rangeText(knobs::exposure)))
+        ->check(checkOf(knobs::exposure))
         ->type_name("FACTOR");
     compare
         ->add_option("-o,--output", compareOptions->diff,
-                     "PNG of the error in false colours: flip, or relative error without flip (default: none)")
+                     described("PNG of the error in false colours: flip, or relative error without flip", words("none")))
         ->type_name("FILE");
     compare
         ->add_option("--side-by-side", compareOptions->sideBySide,
-                     "PNG of the layer of both, tone-mapped alike, and the error in false colours (default: none)")
+                     described("PNG of the layer of both, tone-mapped alike, and the error in false colours", words("none")))
         ->type_name("FILE");
     onChosen(compare, context, compareOptions, runCompare);
 }

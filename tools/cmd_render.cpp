@@ -23,9 +23,9 @@ namespace
 const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_indirect", "glossy_indirect", "depth",  "normal", "albedo",
                                                "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
 
-constexpr const char *kIrradiance = "irradiance", *kPatches = "patches", *kTraced = "traced"; // of --diffuse
-constexpr uint32_t kTracedAreaSamples = 2;                                                    // of a frame's rays, where each is traced
-constexpr const char *kMaps = "maps", *kField = "field";                                      // of --area-shadows
+constexpr std::string_view kIrradiance = knobs::kDiffuse[0], kPatches = knobs::kDiffuse[1], kTraced = knobs::kDiffuse[2];
+constexpr std::string_view kMaps = knobs::kAreaShadows[0], kField = knobs::kAreaShadows[1];
+static_assert(kPatches == "patches" && kTraced == "traced" && kField == "field");
 
 struct RenderOptions
 {
@@ -34,12 +34,13 @@ struct RenderOptions
     PictureOptions pictures;
     std::string field, effects = "auto", tracer = "ours", device;
     QualityOption quality;
-    uint32_t width = 640, height = 360, samples = 1, frames = 1, seed = 1;
+    uint32_t width = knobs::width.value, height = knobs::height.value, samples = knobs::glossyRays.value, frames = knobs::drawnFrames.value,
+             seed = knobs::frameSeed.value;
     std::optional<float> roughness;
-    float raysBelow = gpu::kRaysBelow;
-    uint32_t traceEvery = 1, areaSamples = 0; // 0: by --samples
-    bool noDenoise = false, temporal = false;
-    std::string diffuse = kIrradiance, areaShadows = kMaps;
+    float raysBelow = knobs::raysBelow.value;
+    uint32_t traceEvery = knobs::traceEvery.value, areaSamples = 0; // 0: by --samples
+    bool noDenoise = !knobs::denoise.value, temporal = knobs::temporal.value;
+    std::string diffuse{knobs::diffuse.value}, areaShadows{knobs::areaShadows.value};
 };
 
 /// What --quality says and the command line doesn't.
@@ -64,7 +65,7 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
     }
-    const uint32_t aSample = options.areaShadows == kField ? kTracedAreaSamples : settings.areaSamples;
+    const uint32_t aSample = options.areaShadows == kField ? knobs::kTracedAreaSamples : settings.areaSamples;
     settings.areaSamples = options.areaSamples != 0 ? options.areaSamples : aSample * options.samples;
     settings.raysBelow = options.raysBelow;
     settings.traceEvery = options.traceEvery;
@@ -273,66 +274,23 @@ void addRenderCommand(CLI::App& app, Context& context)
     command
         ->add_option(
             "--effects", options->effects,
-            "auto: what the scene calls for, on the tiles of the picture that need it; all: every effect over the whole picture, for the "
-            "same pixels; none; or a list of effects, as `sconce check` names them, and denoise: of the passes only those, of lights and "
-            "surfaces all, "
-            "where none of the kind is named; -NAME takes one away, as in "
-            "auto,-mirror,-sun (default: auto)")
+            described("auto: what the scene calls for, on the tiles of the picture that need it; all: every effect over the whole picture, "
+                      "for the same pixels; none; or a list of effects, as `sconce check` names them, and denoise: of the passes only "
+                      "those, of lights and surfaces all, where none of the kind is named; -NAME takes one away, as in auto,-mirror,-sun",
+                      options->effects))
         ->type_name("auto|all|none|LIST");
-    command
-        ->add_option(
-            "--rays-below", options->raysBelow,
-            "Roughness below which reflections are traced; rougher ones are read from prefiltered radiance (default: 0.4; range: 0 "
-            "to 2)")
-        ->check(unlisted(CLI::Range(0.0f, 2.0f)))
-        ->type_name("R");
-    command
-        ->add_option(
-            "--diffuse", options->diffuse,
-            "irradiance: diffuse light from prefiltered irradiance, emitters and sky from shadowed samples; patches: the same from what a "
-            "probe sees as patches, which is right about near surfaces; traced: all of it by --samples cosine-weighted rays a pixel, "
-            "filtered (default: irradiance)")
-        ->check(unlisted(CLI::IsMember({kIrradiance, kPatches, kTraced})))
-        ->type_name("irradiance|patches|traced");
-    command
-        ->add_option(
-            "--area-shadows", options->areaShadows,
-            "maps: 64 samples of the emitters and 48 of the sky, shadowed by maps; field: 1024 of either, shadowed by rays through the "
-            "light field, without a map; nothing where --diffuse is traced (default: maps)")
-        ->check(unlisted(CLI::IsMember({kMaps, kField})))
-        ->type_name("maps|field");
+    addKnob(command, "--rays-below", options->raysBelow, knobs::raysBelow, "R");
+    addKnob(command, "--diffuse", options->diffuse, knobs::diffuse);
+    addKnob(command, "--area-shadows", options->areaShadows, knobs::areaShadows);
     addTracer(command, options->tracer);
-    command
-        ->add_option(
-            "--samples", options->samples,
-            "Glossy and diffuse rays a pixel; noise falls with the square root, time grows in proportion (default: 1; range: 1 to 64)")
-        ->check(unlisted(CLI::Range(1u, 64u)))
-        ->type_name("N");
-    command
-        ->add_option("--area-samples", options->areaSamples,
-                     "Samples of the emitters, and as many of the sky, a pixel (default: 8 for each of --samples, 2 with --area-shadows "
-                     "field; range: 1 to 1024)")
-        ->check(unlisted(CLI::Range(1u, 1024u)))
-        ->type_name("N");
-    command
-        ->add_option(
-            "--trace-every", options->traceEvery,
-            "Traces one pixel of 1, 2, 4, 8 or 16 and makes the others from those about them that show the same surface; mirrors and "
-            "sharp reflections are traced at every pixel (default: 1)")
-        ->check(unlisted(CLI::IsMember({1u, 2u, 4u, 8u, 16u})))
-        ->type_name("N");
-    command->add_flag("--no-denoise", options->noDenoise, "Leaves the glossy term unfiltered (default: filtered)");
-    command->add_flag("--temporal", options->temporal,
-                      "Filters over time, too: each of --frames N takes new random rays and blends with the one before (default: off)");
-    command->add_option("--roughness", options->roughness, "Roughness of every surface (default: the materials' own; range: 0 to 1)")
-        ->check(unlisted(CLI::Range(0.0f, 1.0f)))
-        ->type_name("R");
-    command
-        ->add_option("--frames", options->frames,
-                     "Draws the frame N times and reports the median of the times (default: 1; range: 1 to 1000)")
-        ->check(unlisted(CLI::Range(1u, 1000u)))
-        ->type_name("N");
-    command->add_option("--seed", options->seed, "Of the glossy rays (default: 1; range: 0 to 2^32-1)")->type_name("N");
+    addKnob(command, "--samples", options->samples, knobs::glossyRays);
+    addKnob(command, "--area-samples", options->areaSamples, knobs::areaSamples);
+    addKnob(command, "--trace-every", options->traceEvery, knobs::traceEvery);
+    addSwitch(command, "--no-denoise", options->noDenoise, knobs::denoise);
+    addSwitch(command, "--temporal", options->temporal, knobs::temporal);
+    addKnob(command, "--roughness", options->roughness, knobs::roughness, "R");
+    addKnob(command, "--frames", options->frames, knobs::drawnFrames);
+    addKnob(command, "--seed", options->seed, knobs::frameSeed);
     addDevice(command, options->device);
     options->pictures.add(command, kFrameLayers);
     options->quality.add(command);

@@ -146,7 +146,7 @@ void addTraceCommand(CLI::App& app, Context& context)
         ->type_name("FILE");
     command->add_option("-o,--output", options->output, "CSV to write: a line a ray, in order (required)")->required()->type_name("FILE");
     addTracer(command, options->tracer);
-    command->add_flag("--cpu", options->cpu, "Trace on the CPU, with the text that the device runs (default: off)");
+    command->add_flag("--cpu", options->cpu, described("Trace on the CPU, with the text that the device runs", words("off")));
     addDevice(command, options->device);
     onChosen(command, context, options, runTrace);
 }

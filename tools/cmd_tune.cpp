@@ -54,27 +54,13 @@ void addTuneCommand(CLI::App& app, Context& context)
         addCommand(app, context, "tune", "Picks settings that keep to a time, an error or a memory from what `sconce bench` measured");
     auto options = std::make_shared<TuneOptions>();
     command->add_option("SCENE", options->scene, "Name of a scene of the results")->required()->type_name("");
-    command->add_option("--results", options->results, "What a bench measured (default: out/bench/results.json)")->type_name("FILE");
+    command->add_option("--results", options->results, described("What a bench measured", options->results))->type_name("FILE");
+    addKnob(command, "--time", options->goal.frameMs, knobs::goalTime, "MS");
+    addKnob(command, "--error", options->goal.error, knobs::goalError, "E");
+    addKnob(command, "--memory", options->goal.bytes, knobs::goalMemory, "BYTES");
+    addKnob(command, "--metric", options->goal.metric, knobs::goalMetric);
     command
-        ->add_option("--time", options->goal.frameMs,
-                     "At most so many milliseconds a frame of the size that was measured (default: any; range: > 0)")
-        ->check(unlisted(CLI::PositiveNumber))
-        ->type_name("MS");
-    command
-        ->add_option("--error", options->goal.error,
-                     "At most so much of the metric; then the fastest is taken, else the most exact (default: any; range: > 0)")
-        ->check(unlisted(CLI::PositiveNumber))
-        ->type_name("E");
-    command->add_option("--memory", options->goal.bytes, "At most so many bytes of light field (default: any; range: > 0)")
-        ->check(unlisted(CLI::PositiveNumber))
-        ->type_name("BYTES");
-    command
-        ->add_option("--metric", options->goal.metric,
-                     "What the error is: wrong_rays, or beauty, diffuse or glossy with .mse, .relmse or .flip (default: glossy.relmse)")
-        ->check(unlisted(CLI::IsMember({"wrong_rays", "beauty.mse", "beauty.relmse", "beauty.flip", "diffuse.mse", "diffuse.relmse",
-                                        "diffuse.flip", "glossy.mse", "glossy.relmse", "glossy.flip"})))
-        ->type_name("NAME");
-    command->add_option("-o,--output", options->output, "File to write, for --quality of place, bake and render (default: settings.json)")
+        ->add_option("-o,--output", options->output, described("File to write, for --quality of place, bake and render", options->output))
         ->type_name("FILE");
     onChosen(command, context, options, runTune);
 }

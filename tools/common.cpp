@@ -62,8 +62,8 @@ std::string spelledForShell(int argc, const char* const* argv)
 CLI::App* addCommand(CLI::App& app, Context& context, const std::string& name, const std::string& description)
 {
     CLI::App* command = app.add_subcommand(name, description);
-    command->add_flag("--json", context.json, "Machine-readable results on stdout (default: text)");
-    command->add_flag("--quiet,-q", context.quiet, "No progress and no notes on stderr, errors only (default: off)");
+    command->add_flag("--json", context.json, described("Machine-readable results on stdout", words("text")));
+    command->add_flag("--quiet,-q", context.quiet, described("No progress and no notes on stderr, errors only", words("off")));
     return command;
 }
 
@@ -250,17 +250,20 @@ void addVec3(CLI::App* command, const std::string& name, std::optional<vec3>& ta
 
 void addSize(CLI::App* command, uint32_t& width, uint32_t& height)
 {
+    const auto spelled = [](uint32_t across, uint32_t down) { return std::to_string(across) + "x" + std::to_string(down); };
+    const std::string most = spelled(knobs::width.most, knobs::height.most);
     command
         ->add_option_function<std::string>(
             "--size",
-            [&](const std::string& text)
+            [&width, &height, most](const std::string& text)
             {
                 const Result<std::vector<uint32_t>> numbers = parseSize(text, 2);
                 if (!numbers) throw CLI::ValidationError("--size", numbers.error().message);
                 width = (*numbers)[0], height = (*numbers)[1];
-                if (width > 8192 || height > 8192) throw CLI::ValidationError("--size", "'" + text + "' is larger than 8192x8192");
+                if (!knobs::width.inRange(width) || !knobs::height.inRange(height))
+                    throw CLI::ValidationError("--size", "'" + text + "' is beyond " + most + ".");
             },
-            "Picture size in pixels (default: " + std::to_string(width) + "x" + std::to_string(height) + "; range: 1x1 to 8192x8192)")
+            described("Picture size in pixels", spelled(width, height), spelled(knobs::width.least, knobs::height.least) + " to " + most))
         ->type_name("WxH");
 }
 
@@ -290,8 +293,10 @@ void SceneOptions::addLight(CLI::App* command)
                 if (sunIrradiance && glm::any(glm::lessThan(*sunIrradiance, vec3(0.0f))))
                     throw CLI::ValidationError("--sun", "'" + text + "' has negative light");
             },
-            "Replaces the scene's directional lights by one: the way its light travels, any length, and its irradiance in W/m^2 "
-            "(default: the scene's own; irradiance 3.2,3.0,2.7; range: >= 0)")
+            described("Replaces the scene's directional lights by one: the way its light travels, any length, and its irradiance in W/m^2",
+                      defaultText(knobs::light) + "; irradiance " + knobText(kDefaultSunIrradiance[0]) + "," +
+                          knobText(kDefaultSunIrradiance[1]) + "," + knobText(kDefaultSunIrradiance[2]),
+                      rangeText(knobs::light)))
         ->type_name("X,Y,Z[,R,G,B]");
     command
         ->add_option_function<std::string>(
@@ -303,7 +308,7 @@ void SceneOptions::addLight(CLI::App* command)
                 sky = vec3((*n)[0], (*n)[1], (*n)[2]);
                 if (glm::any(glm::lessThan(*sky, vec3(0.0f)))) throw CLI::ValidationError("--sky", "'" + text + "' has negative light");
             },
-            "Radiance of the sky, W/(m^2 sr) (default: the scene's own; range: >= 0)")
+            described(knobs::light.what, defaultText(knobs::light), rangeText(knobs::light)))
         ->type_name("R,G,B");
 }
 
@@ -342,12 +347,10 @@ Result<Scene> SceneOptions::load(const Context& context) const
 
 void CameraOptions::add(CLI::App* command)
 {
-    command->add_option("--camera", name, "Camera of the scene, by name or number (default: the first)")->type_name("NAME");
-    addVec3(command, "--eye", eye, "Where the camera is, metres (default: the scene's camera)");
+    command->add_option("--camera", name, described("Camera of the scene, by name or number", words("the first")))->type_name("NAME");
+    addVec3(command, "--eye", eye, described("Where the camera is, metres", words("the scene's camera")));
     addVec3(command, "--target", target, "What it looks at, metres; needed with --eye");
-    command->add_option("--fov", fov, "Vertical field of view with --eye, degrees (default: 60; range: 1 to 170)")
-        ->check(unlisted(CLI::Range(1.0f, 170.0f)))
-        ->type_name("DEGREES");
+    addKnob(command, "--fov", fov, knobs::verticalFov, "DEGREES");
 }
 
 Result<Camera> CameraOptions::choose(const Scene& scene) const
@@ -381,7 +384,8 @@ Result<Camera> CameraOptions::choose(const Scene& scene) const
 
 void addDevice(CLI::App* command, std::string& device)
 {
-    command->add_option("--device", device, "Vulkan device, by number or part of its name, see `sconce doctor` (default: the best)")
+    command
+        ->add_option("--device", device, described("Vulkan device, by number or part of its name, see `sconce doctor`", words("the best")))
         ->type_name("NAME");
 }
 

@@ -11,6 +11,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
+#include "tools/knob_options.h"
 
 namespace sconce::tools
 {
@@ -99,7 +100,7 @@ struct CameraOptions
 {
     std::string name;
     std::optional<vec3> eye, target;
-    float fov = 60.0f; // degrees, vertical
+    float fov = knobs::verticalFov.value; // degrees, vertical
 
     void add(CLI::App* command);
     Result<Camera> choose(const Scene& scene) const;
@@ -125,6 +126,7 @@ Json toJson(vec3 v);
 std::vector<std::string> split(const std::string& text, char separator);
 
 void addSceneCommands(CLI::App& app, Context& context);
+void addKnobsCommand(CLI::App& app, Context& context);
 void addPlaceCommand(CLI::App& app, Context& context);
 void addBakeCommand(CLI::App& app, Context& context);
 void addFieldCommands(CLI::App& app, Context& context);

@@ -110,13 +110,16 @@ void addTracer(CLI::App* command, std::string& tracer)
 {
     std::vector<std::string> names{"ours"};
     for (Baseline baseline : kBaselines) names.emplace_back(baselineName(baseline));
+    std::string spelled;
+    for (const std::string& name : names) spelled += (spelled.empty() ? "" : "|") + name;
     command
         ->add_option("--tracer", tracer,
-                     "ours, or an opponent: b0 (McGuire et al. 2017 as published) and b0plus (its defects mended) on a grid of octahedral "
-                     "probes, b0plus-octree on octahedral probes anywhere, wang (Wang et al. 2019) on octahedral maps that it makes from "
-                     "cube faces, as large as a face (default: ours)")
+                     described("ours, or an opponent: b0 (McGuire et al. 2017 as published) and b0plus (its defects mended) on a grid of "
+                               "octahedral probes, b0plus-octree on octahedral probes anywhere, wang (Wang et al. 2019) on octahedral maps "
+                               "that it makes from cube faces, as large as a face",
+                               tracer))
         ->check(unlisted(CLI::IsMember(names)))
-        ->type_name("ours|b0|b0plus|b0plus-octree|wang");
+        ->type_name(spelled);
 }
 
 } // namespace sconce::tools

@@ -24,6 +24,7 @@ int main(int argc, char** argv)
     addReferenceCommands(app, context);
     addBenchCommand(app, context);
     addTuneCommand(app, context);
+    addKnobsCommand(app, context);
     addDoctorCommand(app, context);
     try
     {

@@ -21,15 +21,12 @@ std::string joined(const std::vector<std::string>& names)
 void PictureOptions::add(CLI::App* command, const std::vector<std::string>& layers)
 {
     command->add_option("-o,--output", output, "EXR to write, 32-bit float, linear radiance (required)")->required()->type_name("FILE");
-    command->add_option("--aov", aov, "Layers to write, separated by commas (default: all that are at hand; of " + joined(layers) + ")")
-        ->type_name("LIST");
-    command->add_option("--png", png, "Also writes the beauty layer as it looks: exposure, ACES tone map, sRGB (default: none)")
-        ->type_name("FILE");
     command
-        ->add_option("--exposure", exposure,
-                     "Factor before the tone map of --png (default: from the picture's log-average; range: 1e-6 to 1e6)")
-        ->check(unlisted(CLI::Range(1e-6f, 1e6f)))
-        ->type_name("FACTOR");
+        ->add_option("--aov", aov, described("Layers to write, separated by commas, of " + joined(layers), words("all that are at hand")))
+        ->type_name("LIST");
+    command->add_option("--png", png, described("Also writes the beauty layer as it looks: exposure, ACES tone map, sRGB", words("none")))
+        ->type_name("FILE");
+    addKnob(command, "--exposure", exposure, knobs::exposure, "FACTOR");
 }
 
 std::string PictureOptions::problem(const std::vector<std::string>& layers) const

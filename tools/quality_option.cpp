@@ -6,9 +6,11 @@ namespace sconce::tools
 void QualityOption::add(CLI::App* to)
 {
     command = to;
-    to->add_option("--quality", text,
-                   "A file of `sconce tune`, or draft, low, medium, high, reference: sets what the other options don't (default: the other "
-                   "options' defaults)")
+    std::string levels;
+    for (const QualityLevel& level : qualityLevels()) levels.append(levels.empty() ? "" : ", ").append(level.name);
+    to->add_option(
+          "--quality", text,
+          described("A file of `sconce tune`, or " + levels + ": sets what the other options don't", words("the other options' defaults")))
         ->type_name("FILE|LEVEL");
 }
 

@@ -16,10 +16,14 @@ inline void addRaceOptions(CLI::App& app, RaceSettings& race)
            "sets knobs, b0plus/8 the low factor (default: b0plus for octahedral maps on a grid, b0plus-octree for others, else ours); "
            "repeatable")
         ->required();
-    app.add_option("--runs", race.runs, "timed runs; 0 takes no times (default: 0; range: 0 to 1000)")->check(CLI::Range(0u, 1000u));
-    app.add_option("--timed", race.timed, "rays of a timed run, evenly taken of all (default: 50000; range: 1 to 262144)")
-        ->check(CLI::Range(1u, 262144u));
-    app.add_option("--seed", race.seed, "seed of the rays and of their shuffling (default: 1)");
+    const auto add = [&app](const char* name, uint32_t& target, const Knob<uint32_t>& knob)
+    {
+        app.add_option(name, target, std::string(knob.what) + " (default: " + defaultText(knob) + "; range: " + rangeText(knob) + ")")
+            ->check(CLI::Range(knob.least, knob.most));
+    };
+    add("--runs", race.runs, knobs::timedRuns);
+    add("--timed", race.timed, knobs::timedRays);
+    app.add_option("--seed", race.seed, "seed of the rays and of their shuffling (default: " + std::to_string(race.seed) + ")");
     app.add_flag("--cpu", race.cpu, "trace the same rays on the CPU, too, and count the answers that differ");
     app.add_flag("--json", race.json, "machine-readable results");
 }

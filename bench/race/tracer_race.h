@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/knobs.h"
 #include "bench/race/trace_score.h"
 #include "runtime/vulkan/gpu.h"
 
@@ -13,11 +14,11 @@ namespace sconce
 
 struct RaceSettings
 {
-    std::vector<std::string> fields; // [TRACER=]FILE each, as TracedMethod::create reads them
-    uint32_t runs = 0;               // timed; 0 takes no times
-    uint32_t timed = 50000;          // rays of a timed run, evenly taken of all, 1..262144
-    uint64_t seed = 1;               // of their shuffling
-    bool cpu = false;                // trace on the CPU, too, and count the answers that differ
+    std::vector<std::string> fields;         // [TRACER=]FILE each, as TracedMethod::create reads them
+    uint32_t runs = knobs::timedRuns.value;  // timed; 0 takes no times
+    uint32_t timed = knobs::timedRays.value; // rays of a timed run, evenly taken of all
+    uint64_t seed = 1;                       // of their shuffling
+    bool cpu = false;                        // trace on the CPU, too, and count the answers that differ
     bool json = false;
 };
 

@@ -44,15 +44,10 @@ bool allFinite(const PathLight& p)
 
 Status check(const ReferenceSettings& s)
 {
-    const auto bad = [](const std::string& field, const std::string& value, const std::string& range) {
-        return Error{ErrorCode::badArgument, "reference " + field + " is " + value + "; choose " + range};
-    };
-    if (s.width == 0 || s.width > 16384) return bad("width", std::to_string(s.width), "1 to 16384 pixels");
-    if (s.height == 0 || s.height > 16384) return bad("height", std::to_string(s.height), "1 to 16384 pixels");
-    if (s.samples == 0 || s.samples > 1048576) return bad("samples", std::to_string(s.samples), "1 to 1048576 a pixel");
-    if (s.bounces > 64) return bad("bounces", std::to_string(s.bounces), "0 to 64");
-    if (s.roughness && !(*s.roughness >= 0.0f && *s.roughness <= 1.0f)) return bad("roughness", std::to_string(*s.roughness), "0 to 1");
-    if (const std::string fault = cameraFault(s.camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    const std::string fault = firstFault({faultOf(knobs::width, s.width), faultOf(knobs::height, s.height),
+                                          faultOf(knobs::paths, s.samples), faultOf(knobs::pathBounces, s.bounces),
+                                          s.roughness ? faultOf(knobs::roughness, *s.roughness) : std::string(), cameraFault(s.camera)});
+    if (!fault.empty()) return Error{ErrorCode::badArgument, fault};
     return success();
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "bench/reference/image_io.h"
@@ -12,16 +13,18 @@
 namespace sconce
 {
 
+/// Ranges and prices: base/knobs.h.
 struct ReferenceSettings
 {
-    uint32_t width = 640;           // pixels, 1..16384
-    uint32_t height = 360;          // pixels, 1..16384
-    uint32_t samples = 64;          // paths a pixel, 1..1048576; noise falls with the square root
-    uint32_t bounces = 2;           // times baked light is re-injected, 0..64: a path scatters at most bounces + 2 times
-    uint64_t seed = 1;              // same seed, same bytes, whatever the number of threads
-    std::optional<float> roughness; // [0,1]; set: the roughness of every surface
-    bool guides = true;             // depth, normal, albedo and roughness, too: one more ray a pixel; false: left out
-    bool pixelCentre = false;       // true: every path starts at the pixel's centre, as a rasteriser's; false: box filter over the pixel
+    uint32_t width = knobs::width.value;         // pixels
+    uint32_t height = knobs::height.value;       // pixels
+    uint32_t samples = knobs::paths.value;       // paths a pixel; noise falls with the square root
+    uint32_t bounces = knobs::pathBounces.value; // times baked light is re-injected: a path scatters at most bounces + 2 times
+    uint64_t seed = knobs::pathSeed.value;       // same seed, same bytes, whatever the number of threads
+    std::optional<float> roughness;              // [0,1]; set: the roughness of every surface
+    bool guides = true;                          // depth, normal, albedo and roughness, too: one more ray a pixel; false: left out
+    bool pixelCentre =
+        knobs::pixelCentre.value; // true: every path starts at the pixel's centre, as a rasteriser's; false: box filter over the pixel
     Camera camera;
 };
 

@@ -81,7 +81,7 @@ bool isOurs(const Json& point)
 /// Whether it varies the frame alone (rays a pixel, filters): what any tracer's frame may have, and so no merit of one.
 bool variesTheFrame(const Json& point)
 {
-    const Knob* knob = findKnob(point["knob"].get<std::string>());
+    const SweptKnob* knob = findKnob(point["knob"].get<std::string>());
     return point["knob"] == "level" || (knob && knob->stage == Stage::frame);
 }
 

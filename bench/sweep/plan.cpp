@@ -41,12 +41,12 @@ public:
     }
 
     /// Nothing where the value is the default's.
-    void addVaried(const PointSettings& base, const Knob& knob, const std::string& value)
+    void addVaried(const PointSettings& base, const SweptKnob& knob, const std::string& value)
     {
         if (!wants(base)) return;
         if (!plan.knobs.empty() && std::ranges::find(plan.knobs, knob.name) == plan.knobs.end()) return;
         PlannedPoint point{base.method + "/" + std::string(knob.name) + "=" + value, std::string(knob.name), value, base};
-        knob.set(point.settings, value);
+        if (!knob.set(point.settings, value)) return; // beyond its range, as half of the least resolution is
         if (knob.get(point.settings) == knob.get(base)) return;
         const auto same = [&](const PlannedPoint& other) { return other.id == point.id; };
         if (std::ranges::none_of(points, same)) points.push_back(std::move(point));
@@ -85,7 +85,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         if (!findKnob(name) && name != kLevelKnob)
         {
             std::string known;
-            for (const Knob& knob : knobs()) known += std::string(knob.name) + ", ";
+            for (const SweptKnob& knob : sweptKnobs()) known += std::string(knob.name) + ", ";
             return Error{ErrorCode::badArgument, "There is no knob '" + name + "'; there are: " + known + kLevelKnob + "."};
         }
     Planner planner(settings);
@@ -111,7 +111,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
     if (settings.methodsOnly) return std::move(planner.points);
 
     planner.addProbeCounts(ours, {0.25, 0.5, 2.0});
-    for (const Knob& knob : knobs())
+    for (const SweptKnob& knob : sweptKnobs())
         if (std::ranges::find(knob.methods, ours.method) != knob.methods.end())
             for (const std::string_view value : knob.sweep) planner.addVaried(ours, knob, std::string(value));
     for (const QualityLevel& level : qualityLevels()) planner.addLevel(ours, level);

@@ -16,12 +16,12 @@ struct PlannedPoint
 
 struct PlanSettings
 {
-    uint32_t probes = 0;              // of the default points
-    std::vector<std::string> knobs;   // only these; empty: all
-    std::vector<std::string> methods; // only these; empty: all
-    bool methodsOnly = false;         // the methods' default points alone
-    std::optional<float> roughness;   // of every surface
-    PointSettings ours;               // our default point; method, probes and roughness are set from the above
+    uint32_t probes = knobs::benchProbes.value; // of the default points
+    std::vector<std::string> knobs;             // only these; empty: all
+    std::vector<std::string> methods;           // only these; empty: all
+    bool methodsOnly = false;                   // the methods' default points alone
+    std::optional<float> roughness;             // of every surface
+    PointSettings ours;                         // our default point; method, probes and roughness are set from the above
 };
 
 /// The points of one scene; the first is our default. Ours with every knob; B0, B0+, B0+ with our placement and lists, and W' with their

@@ -18,16 +18,17 @@ namespace sconce
 /// What is measured, how large and how often: the same for every point of a scene.
 struct BenchSettings
 {
-    uint32_t width = 320, height = 180; // pixels of the frames
-    uint32_t rays = 50000;              // glossy rays judged against Embree
-    uint32_t frames = 20;               // timed, each point in turn
-    uint32_t warmUp = 2;                // frames before them
-    uint32_t referencePaths = 256;      // a pixel
-    uint32_t referenceBounces = 8;      // a truth with more bounces than any light field that is measured
-    uint64_t seed = 1;                  // of rays and paths
-    bool pictures = true;               // of every method's default point
+    uint32_t width = knobs::benchWidth.value, height = knobs::benchHeight.value; // pixels of the frames
+    uint32_t rays = knobs::judgedRays.value;                                     // glossy rays judged against Embree
+    uint32_t frames = knobs::timedFrames.value;                                  // timed, each point in turn
+    uint32_t warmUp = knobs::warmUp.value;                                       // frames before them
+    uint32_t referencePaths = knobs::referencePaths.value;                       // a pixel
+    uint32_t referenceBounces = knobs::referenceBounces.value; // a truth with more bounces than any light field that is measured
+    uint64_t seed = knobs::benchSeed.value;                    // of rays and paths
+    bool pictures = true;                                      // of every method's default point
     bool times = true;
-    uint64_t groupBytes = uint64_t(2) << 30; // of light fields that stand on the device at once to be timed in turns
+    uint64_t groupBytes = uint64_t(knobs::groupMebibytes.value)
+                          << 20; // of light fields that stand on the device at once to be timed in turns
 };
 
 /// One scene on the bench: its truth, its light fields and its points, each made once and kept in a folder by a hash of everything it

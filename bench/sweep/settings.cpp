@@ -26,18 +26,19 @@ template <class T> bool parse(std::string_view text, T& value)
     return true;
 }
 
+/// @param said   what base/knobs.h says of it
 /// @param field  (auto& settings) -> the member, which decides how the value is read and written
-template <class Field>
-Knob knob(std::string_view name, Stage stage, std::vector<std::string_view> methods, std::vector<std::string_view> sweep,
-          std::string_view unit, Field field)
+template <class T, class Field>
+SweptKnob knob(std::string_view name, Stage stage, std::vector<std::string_view> methods, std::vector<std::string_view> sweep,
+               const Knob<T>& said, Field field)
 {
     const auto get = [field](const PointSettings& settings) -> Json
     {
         const auto& value = field(settings);
-        using T = std::remove_cvref_t<decltype(value)>;
-        if constexpr (std::is_same_v<T, bool>)
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, bool>)
             return value ? "on" : "off";
-        else if constexpr (std::is_same_v<T, float>) // as it is spelled: 0.002, not 0.0020000000949949026
+        else if constexpr (std::is_same_v<Value, float>) // as it is spelled: 0.002, not 0.0020000000949949026
         {
             char text[32];
             const auto end = std::to_chars(text, text + sizeof text, value).ptr;
@@ -48,8 +49,17 @@ Knob knob(std::string_view name, Stage stage, std::vector<std::string_view> meth
         else
             return value;
     };
-    const auto set = [field](PointSettings& settings, std::string_view text) { return parse(text, field(settings)); };
-    return {name, stage, std::move(methods), std::move(sweep), unit, get, set};
+    const auto set = [field, &said](PointSettings& settings, std::string_view text)
+    {
+        using Value = std::remove_cvref_t<decltype(field(settings))>;
+        Value value{};
+        if (!parse(text, value)) return false;
+        if constexpr (std::is_same_v<Value, T> || std::is_same_v<Value, std::string>) // not a choice that settings hold as switches
+            if (!said.allows(value)) return false;
+        field(settings) = value;
+        return true;
+    };
+    return {name, stage, std::move(methods), std::move(sweep), said.unit, rangeText(said), get, set};
 }
 
 #define SCONCE_FIELD(member)                                                                                                               \
@@ -58,43 +68,43 @@ Knob knob(std::string_view name, Stage stage, std::vector<std::string_view> meth
         return s.member;                                                                                                                   \
     }
 
-std::vector<Knob> makeKnobs()
+std::vector<SweptKnob> makeKnobs()
 {
     const std::vector<std::string_view> ours{"ours"}, placed{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
         opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang"}, paths{kPathTracer},
         fields{"ours", "ours-grid"}, lit{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", kPathTracer};
     using enum Stage;
     return {
-        knob("probes", place, placed, {}, "probes", SCONCE_FIELD(probes)),
-        knob("placement", place, placed, {"optimised", "skeleton", "balls"}, "", SCONCE_FIELD(placement)),
-        knob("resolution", bake, placed, {"128", "256", "416", "512", "1024"}, "texels", SCONCE_FIELD(resolution)),
-        knob("bounces", bake, lit, {"0", "1", "2", "4"}, "bounces", SCONCE_FIELD(bounces)),
-        knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, "voxels", SCONCE_FIELD(octreeVoxels)),
-        knob("low factor", trace, opponents, {}, "texels", SCONCE_FIELD(lowFactor)),
-        knob("distance bits", trace, ours, {"16", "24", "32"}, "bits a texel", SCONCE_FIELD(distanceBits)),
-        knob("ranked", trace, ours, {"1", "2", "3", "4"}, "probes", SCONCE_FIELD(quality.trace.ranked)),
-        knob("hand-offs", trace, ours, {"0", "2", "8", "24", "64"}, "hand-offs", SCONCE_FIELD(quality.trace.maxHandoffs)),
-        knob("start level", trace, ours, {"0", "2", "4", "6"}, "level", SCONCE_FIELD(quality.trace.startLevel)),
-        knob("coarsest level", trace, ours, {"0", "2", "4", "6"}, "level", SCONCE_FIELD(quality.trace.coarsestLevel)),
-        knob("tolerance", trace, ours, {"0.25", "0.5", "1", "2", "4"}, "", SCONCE_FIELD(quality.trace.tolerance)),
-        knob("opinion", trace, ours, {"0", "0.001", "0.002", "0.01"}, "diagonals", SCONCE_FIELD(quality.trace.opinion)),
-        knob("far bounds", trace, ours, {"0", "1"}, "", SCONCE_FIELD(quality.trace.farBounds)),
-        knob("rays", frame, placed, {"1", "2", "4", "8"}, "rays a pixel", SCONCE_FIELD(frame.glossyRays)),
-        knob("trace every", frame, placed, {"1", "2", "4", "8", "16"}, "pixels", SCONCE_FIELD(frame.traceEvery)),
-        knob("area samples", frame, placed, {"2", "8", "32"}, "samples", SCONCE_FIELD(frame.areaSamples)),
-        knob("field shadows", frame, fields, {"off", "on"}, "", SCONCE_FIELD(frame.effects.fieldShadows)),
-        knob("denoise", frame, placed, {"on", "off"}, "", SCONCE_FIELD(frame.effects.denoise)),
-        knob("temporal", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.temporal)),
-        knob("patches", frame, fields, {"off", "on"}, "", SCONCE_FIELD(frame.effects.patches)),
-        knob("traced diffuse", frame, placed, {"off", "on"}, "", SCONCE_FIELD(frame.effects.tracedDiffuse)),
-        knob("rays below", frame, placed, {"0", "0.2", "1"}, "roughness", SCONCE_FIELD(frame.raysBelow)),
-        knob("paths", frame, paths, {"1", "4", "16", "64"}, "paths a pixel", SCONCE_FIELD(paths)),
+        knob("probes", place, placed, {}, knobs::benchProbes, SCONCE_FIELD(probes)),
+        knob("placement", place, placed, {"optimised", "skeleton", "balls"}, knobs::placement, SCONCE_FIELD(placement)),
+        knob("resolution", bake, placed, {"128", "256", "416", "512", "1024"}, knobs::resolution, SCONCE_FIELD(resolution)),
+        knob("bounces", bake, lit, {"0", "1", "2", "4"}, knobs::bounces, SCONCE_FIELD(bounces)),
+        knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),
+        knob("low factor", trace, opponents, {}, knobs::lowFactor, SCONCE_FIELD(lowFactor)),
+        knob("distance bits", trace, ours, {"16", "24", "32"}, knobs::distanceBits, SCONCE_FIELD(distanceBits)),
+        knob("ranked", trace, ours, {"1", "2", "3", "4"}, knobs::ranked, SCONCE_FIELD(quality.trace.ranked)),
+        knob("hand-offs", trace, ours, {"0", "2", "8", "24", "64"}, knobs::maxHandoffs, SCONCE_FIELD(quality.trace.maxHandoffs)),
+        knob("start level", trace, ours, {"0", "2", "4", "6"}, knobs::startLevel, SCONCE_FIELD(quality.trace.startLevel)),
+        knob("coarsest level", trace, ours, {"0", "2", "4", "6"}, knobs::coarsestLevel, SCONCE_FIELD(quality.trace.coarsestLevel)),
+        knob("tolerance", trace, ours, {"0.25", "0.5", "1", "2", "4"}, knobs::tolerance, SCONCE_FIELD(quality.trace.tolerance)),
+        knob("opinion", trace, ours, {"0", "0.001", "0.002", "0.01"}, knobs::opinion, SCONCE_FIELD(quality.trace.opinion)),
+        knob("far bounds", trace, ours, {"0", "1"}, knobs::farBounds, SCONCE_FIELD(quality.trace.farBounds)),
+        knob("rays", frame, placed, {"1", "2", "4", "8"}, knobs::glossyRays, SCONCE_FIELD(frame.glossyRays)),
+        knob("trace every", frame, placed, {"1", "2", "4", "8", "16"}, knobs::traceEvery, SCONCE_FIELD(frame.traceEvery)),
+        knob("area samples", frame, placed, {"2", "8", "32"}, knobs::areaSamples, SCONCE_FIELD(frame.areaSamples)),
+        knob("field shadows", frame, fields, {"off", "on"}, knobs::areaShadows, SCONCE_FIELD(frame.effects.fieldShadows)),
+        knob("denoise", frame, placed, {"on", "off"}, knobs::denoise, SCONCE_FIELD(frame.effects.denoise)),
+        knob("temporal", frame, placed, {"off", "on"}, knobs::temporal, SCONCE_FIELD(frame.effects.temporal)),
+        knob("patches", frame, fields, {"off", "on"}, knobs::diffuse, SCONCE_FIELD(frame.effects.patches)),
+        knob("traced diffuse", frame, placed, {"off", "on"}, knobs::diffuse, SCONCE_FIELD(frame.effects.tracedDiffuse)),
+        knob("rays below", frame, placed, {"0", "0.2", "1"}, knobs::raysBelow, SCONCE_FIELD(frame.raysBelow)),
+        knob("paths", frame, paths, {"1", "4", "16", "64"}, knobs::tracedPaths, SCONCE_FIELD(paths)),
     };
 }
 
 #undef SCONCE_FIELD
 
-bool has(const Knob& knob, const std::string& method)
+bool has(const SweptKnob& knob, const std::string& method)
 {
     return std::ranges::find(knob.methods, method) != knob.methods.end();
 }
@@ -107,22 +117,22 @@ uint32_t PointSettings::chart() const
     return baseline && *baseline != Baseline::wang ? gpu::kChartOctahedral : gpu::kChartCube; // wang's maps are made from cube faces
 }
 
-std::span<const Knob> knobs()
+std::span<const SweptKnob> sweptKnobs()
 {
-    static const std::vector<Knob> all = makeKnobs();
+    static const std::vector<SweptKnob> all = makeKnobs();
     return all;
 }
 
-const Knob* findKnob(std::string_view name)
+const SweptKnob* findKnob(std::string_view name)
 {
-    const auto found = std::ranges::find(knobs(), name, &Knob::name);
-    return found == knobs().end() ? nullptr : &*found;
+    const auto found = std::ranges::find(sweptKnobs(), name, &SweptKnob::name);
+    return found == sweptKnobs().end() ? nullptr : &*found;
 }
 
 Json settingsJson(const PointSettings& settings, Stage upTo)
 {
     Json json = Json::object();
-    for (const Knob& knob : knobs())
+    for (const SweptKnob& knob : sweptKnobs())
         if (has(knob, settings.method) && knob.stage <= upTo) json[std::string(knob.name)] = knob.get(settings);
     return json;
 }
@@ -134,10 +144,10 @@ Result<PointSettings> settingsFrom(const std::string& method, const Json& json)
     if (!json.is_object()) return Error{ErrorCode::badInput, "The settings of a point of method '" + method + "' are no object."};
     for (const auto& [name, value] : json.items())
     {
-        const Knob* knob = findKnob(name);
+        const SweptKnob* knob = findKnob(name);
         if (!knob || !has(*knob, method)) return Error{ErrorCode::badInput, "Method '" + method + "' has no knob '" + name + "'."};
         if (!knob->set(settings, value.is_string() ? value.get<std::string>() : value.dump()))
-            return Error{ErrorCode::badInput, "Knob '" + name + "' can't be " + value.dump() + "."};
+            return Error{ErrorCode::badInput, "Knob '" + name + "' can't be " + value.dump() + "; give " + knob->range + "."};
     }
     return settings;
 }

@@ -24,16 +24,16 @@ inline constexpr const char* kPathTracer = "path tracer";
 struct PointSettings
 {
     std::string method = "ours"; // ours, ours-grid (on a uniform grid), an opponent's (bench/opponents/baselines.h), or the path tracer
-    uint32_t probes = 0;         // asked for; a grid takes the nearest that its shape allows
-    std::string placement = "optimised"; // optimised, skeleton (not refined afterwards), balls, grid
-    uint32_t resolution = 416;           // texels a side of an octahedral map; cube faces have half of it
-    uint32_t bounces = 2;
-    int octreeVoxels = 0;   // OctreeSettings::voxels
-    uint32_t lowFactor = 0; // of an opponent; 0: bestLowFactor
-    int distanceBits = 32;  // of a texel of ours (bench/race/distance_format.h)
-    Quality quality;        // of our tracer
+    uint32_t probes = knobs::benchProbes.value;                  // asked for; a grid takes the nearest that its shape allows
+    std::string placement = std::string(knobs::placement.value); // optimised, skeleton (not refined afterwards), balls, grid
+    uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
+    uint32_t bounces = knobs::benchBounces.value;
+    int octreeVoxels = knobs::octreeVoxels.value; // OctreeSettings::voxels
+    uint32_t lowFactor = knobs::lowFactor.value;  // of an opponent; 0: bestLowFactor
+    int distanceBits = knobs::distanceBits.value; // of a texel of ours (bench/race/distance_format.h)
+    Quality quality;                              // of our tracer
     RenderSettings frame;
-    uint32_t paths = 1; // a pixel, of the path tracer
+    uint32_t paths = knobs::tracedPaths.value; // a pixel, of the path tracer
 
     bool pathTraced() const { return method == kPathTracer; }
     std::optional<Baseline> opponent() const { return baselineNamed(method); }
@@ -49,21 +49,22 @@ enum class Stage
     frame  // of frames only
 };
 
-/// A knob that trades accuracy for time or memory.
-struct Knob
+/// A knob that a bench sweeps: one of base/knobs.h by the name that results have for it. What that doesn't allow, `set` refuses.
+struct SweptKnob
 {
     std::string_view name;
     Stage stage;
     std::vector<std::string_view> methods; // that have it
     std::vector<std::string_view> sweep;   // values that a bench measures, the default may be among them; empty: the plan says
     std::string_view unit;
+    std::string range; // in words
     std::function<Json(const PointSettings&)> get;
     std::function<bool(PointSettings&, std::string_view)> set; // false: not a value of it
 };
 
 /// All of them. A knob of RenderSettings, Quality or the bake is one line of the table in settings.cpp.
-std::span<const Knob> knobs();
-const Knob* findKnob(std::string_view name);
+std::span<const SweptKnob> sweptKnobs();
+const SweptKnob* findKnob(std::string_view name);
 
 /// Those that the method has, {"probes": 54, ...}; `stages`: only of those up to this one.
 Json settingsJson(const PointSettings& settings, Stage upTo = Stage::frame);

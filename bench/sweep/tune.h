@@ -8,10 +8,10 @@ namespace sconce
 /// What settings must keep to; at least one is set. With an error, the cheapest frame is wanted; else the least error.
 struct TuneGoal
 {
-    std::optional<double> frameMs;        // milliseconds a frame, of the size that was measured
-    std::optional<double> error;          // in the metric
-    std::optional<double> bytes;          // of the light field
-    std::string metric = "glossy.relmse"; // a name of figureOf(): what the error is
+    std::optional<double> frameMs;                             // milliseconds a frame, of the size that was measured
+    std::optional<double> error;                               // in the metric
+    std::optional<double> bytes;                               // of the light field
+    std::string metric = std::string(knobs::goalMetric.value); // a name of figureOf(): what the error is
 };
 
 /// The measured point of ours that suits best. Errors: badArgument (no goal), badInput (nothing measured keeps to it: the sentence names

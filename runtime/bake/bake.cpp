@@ -39,19 +39,20 @@ private:
     std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
 };
 
+static_assert(knobs::kCharts[gpu::kChartCube] == "cube" && knobs::kCharts[gpu::kChartOctahedral] == "octahedral");
+
 std::string argumentFault(std::span<const vec3> probes, const BakeSettings& settings)
 {
     if (settings.chart != gpu::kChartCube && settings.chart != gpu::kChartOctahedral)
         return "chart is " + std::to_string(settings.chart) + "; give kChartCube or kChartOctahedral";
     const bool even = settings.chart == gpu::kChartCube && settings.resolution % 32 == 0; // faces with three levels of the chain
-    if ((!even && !std::has_single_bit(settings.resolution)) || settings.resolution < 16 || settings.resolution > 2048)
-        return "resolution is " + std::to_string(settings.resolution) +
-               "; give a power of two in [16, 2048], or a multiple of 32 for the cube chart";
+    if (const std::string fault = faultOf(knobs::resolution, settings.resolution); !fault.empty()) return fault;
+    if (!even && !std::has_single_bit(settings.resolution))
+        return knob_words::fault(knobs::resolution.name, knobText(settings.resolution), rangeText(knobs::resolution));
     if (!settings.scene.light.areaShadows)
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
-    if (settings.bounces > 64) return "bounces is " + std::to_string(settings.bounces) + "; give a value in [0, 64]";
-    if (!(settings.converged >= 0.0f && settings.converged <= 1.0f))
-        return "converged is " + std::to_string(settings.converged) + "; give a value in [0, 1]";
+    const std::string fault = firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged)});
+    if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return "there are " + std::to_string(probes.size()) + " probes; give between 1 and " + std::to_string(kMostProbes);
     for (size_t i = 0; i < probes.size(); ++i)

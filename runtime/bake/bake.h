@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "runtime/field/field_data.h"
 #include "runtime/frame/effect_plan.h"
@@ -14,19 +15,20 @@
 namespace sconce
 {
 
+/// Ranges and prices: base/knobs.h.
 struct BakeSettings
 {
-    uint32_t resolution = 512;        // texels a side of an octahedral map, power of two, 16..2048; cube faces have half of it
-    uint32_t chart = gpu::kChartCube; // or kChartOctahedral, which the grid baselines need
-    uint32_t bounces = 2;             // times the baked light is re-injected at most, 0..64; each costs one gather a texel
-    float converged = 0.0f;           // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
-    DeviceSceneDesc scene;            // textures and lights
-    std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
-    bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
-    bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
+    uint32_t resolution = knobs::resolution.value;   // texels a side of an octahedral map; cube faces have half of it
+    uint32_t chart = uint32_t(knobs::chart.place()); // kChartCube, or kChartOctahedral, which the grid baselines need
+    uint32_t bounces = knobs::bounces.value;         // times the baked light is re-injected at most; each costs one gather a texel
+    float converged = knobs::converged.value;        // stop earlier, after a bounce that adds less than this share of all light; 0: never
+    DeviceSceneDesc scene;                           // textures and lights
+    std::vector<std::string> effects;                // names of the plan's effects, kept in the file for reports
+    bool radiance = true;                            // keep the maps' radiance, which traced rays need: half of the field
+    bool prefiltered = true;                         // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
-    std::optional<ProbeGrid> grid; // set when the probes are a uniform one
-    uint64_t hostMemory = 0;       // bytes of main memory that it may take; 0: what is free
+    std::optional<ProbeGrid> grid;                // set when the probes are a uniform one
+    uint64_t hostMemory = knobs::hostBytes.value; // bytes of main memory that it may take; 0: what is free
 
     /// Keeps what frames by a plan ask for, and the names of the plan's effects. @param tracedDiffuse  diffuse light by rays, too
     void take(const EffectPlan& plan, bool tracedDiffuse = false);

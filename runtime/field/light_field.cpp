@@ -17,17 +17,11 @@ namespace
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
-    auto wrong = [](const char* name, auto value, const char* range)
-    { return std::string("quality: ") + name + " " + std::to_string(value) + " is outside " + range; };
-    if (q.ranked < 1 || q.ranked > gpu::kRanked) return wrong("ranked", q.ranked, "1..4");
-    if (q.maxHandoffs < 0 || q.maxHandoffs > 64) return wrong("maxHandoffs", q.maxHandoffs, "0..64");
-    if (q.startLevel < 0 || q.startLevel > 6 || q.startLevel % 2) return wrong("startLevel", q.startLevel, "0, 2, 4, 6");
-    if (q.coarsestLevel < 0 || q.coarsestLevel > 6 || q.coarsestLevel % 2) return wrong("coarsestLevel", q.coarsestLevel, "0, 2, 4, 6");
-    if (!(q.tolerance >= 0.25f && q.tolerance <= 4.0f)) return wrong("tolerance", q.tolerance, "0.25..4");
-    if (!(q.epsilon >= 0.0f && q.epsilon <= 1e-2f)) return wrong("epsilon", q.epsilon, "0..0.01");
-    if (!(q.opinion >= 0.0f && q.opinion <= 1.0f)) return wrong("opinion", q.opinion, "0..1");
-    if (q.farBounds != 0 && q.farBounds != 1) return wrong("farBounds", q.farBounds, "0, 1");
-    return {};
+    const std::string fault =
+        firstFault({faultOf(knobs::ranked, q.ranked), faultOf(knobs::maxHandoffs, q.maxHandoffs), faultOf(knobs::startLevel, q.startLevel),
+                    faultOf(knobs::coarsestLevel, q.coarsestLevel), faultOf(knobs::tolerance, q.tolerance),
+                    faultOf(knobs::epsilon, q.epsilon), faultOf(knobs::opinion, q.opinion), faultOf(knobs::farBounds, q.farBounds)});
+    return fault.empty() ? fault : "quality: " + fault;
 }
 
 Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/shared/frame.h"
+#include "shaders/shared/sample_pair.h"
 
 namespace sconce
 {
@@ -16,10 +16,22 @@ namespace
 constexpr QualityLevel kLevels[] = {
     {"draft", 128, 1, {}, 1, 4, 2, true, 0.2f, false, 0.68f, 0.32f, 1.11f},
     {"low", 128, 2, {}, 1, 2, 2, true, 0.2f, false, 0.71f, 0.32f, 1.06f},
-    {"medium", 256, 4, {}, 1, 1, 8, true, gpu::kRaysBelow, false, 1.00f, 1.00f, 1.00f},
+    {"medium", 256, 4, {}, 1, 1, 8, true, knobs::raysBelow.value, false, 1.00f, 1.00f, 1.00f},
     {"high", 416, 4, {}, 2, 1, 32, true, 0.6f, true, 1.65f, 2.48f, 0.96f},
     {"reference", 512, 4, {}, 8, 1, 32, true, 2.0f, true, 5.04f, 3.71f, 0.82f},
 };
+
+constexpr bool inRange(const QualityLevel& level)
+{
+    return knobs::resolution.inRange(level.resolution) && knobs::bounces.inRange(level.bounces) &&
+           knobs::glossyRays.inRange(level.glossyRays) && knobs::traceEvery.inRange(level.traceEvery) &&
+           knobs::areaSamples.inRange(level.areaSamples) && knobs::raysBelow.inRange(level.raysBelow);
+}
+static_assert(std::ranges::all_of(kLevels, inRange));
+
+// Shaders have these for themselves.
+static_assert(knobs::ranked.most == gpu::kRanked);
+static_assert(knobs::glossyRays.most == 1u << gpu::kSampleBits);
 
 } // namespace
 

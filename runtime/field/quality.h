@@ -4,23 +4,24 @@
 #include <span>
 #include <string_view>
 
+#include "base/knobs.h"
 #include "shaders/shared/light_field.h"
 
 namespace sconce
 {
 
-/// Every approximate knob of the tracer, with its default, range and unit.
+/// Every approximate knob of the tracer. Defaults, ranges, units and prices: base/knobs.h.
 struct Quality
 {
     gpu::TraceQuality trace = {
-        .ranked = 4,        // probes of a leaf that are asked, 1..4
-        .maxHandoffs = 24,  // probes a ray may change to before it ends as UNKNOWN, 0..64
-        .startLevel = 4,    // level of the Hi-Z chain a ray starts at in a probe; even, 0..6. Results don't depend on it, reads do
-        .coarsestLevel = 6, // coarsest level climbed to; even, 0..6. Results don't depend on it, reads do
-        .tolerance = 1.0f,  // scale of the hit rule's thickness, 0.25..4; 1 is derived from the texel's footprint
-        .epsilon = 5e-4f,   // absolute slack of the hit rule, share of the scene's diagonal, 0..1e-2
-        .opinion = 1e-3f,   // a hit in a texel larger than this share of the diagonal is asked of a nearer probe, 0..1; 0: never
-        .farBounds = 0,     // 1: read the far bounds, too, and end early behind them; the same results. Fixed in a pass when it is made
+        .ranked = knobs::ranked.value,               // probes of a leaf that are asked
+        .maxHandoffs = knobs::maxHandoffs.value,     // probes a ray may change to before it ends as UNKNOWN
+        .startLevel = knobs::startLevel.value,       // level of the Hi-Z chain a ray starts at in a probe. Results don't depend on it
+        .coarsestLevel = knobs::coarsestLevel.value, // coarsest level climbed to. Results don't depend on it, reads do
+        .tolerance = knobs::tolerance.value,         // scale of the hit rule's thickness; 1 is derived from the texel's footprint
+        .epsilon = knobs::epsilon.value,             // absolute slack of the hit rule, share of the scene's diagonal
+        .opinion = knobs::opinion.value,     // a hit in a texel larger than this share of the diagonal is asked of a nearer probe; 0: never
+        .farBounds = knobs::farBounds.value, // 1: read the far bounds, too, and end early behind them. Fixed in a pass when it is made
     };
 };
 

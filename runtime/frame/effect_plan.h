@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/knobs.h"
 #include "base/result.h"
 #include "scene/scene_check.h"
 
@@ -13,17 +14,19 @@ namespace sconce
 /// Which terms and filters of indirect light are made. What is off has no pipeline, no image and no dispatch.
 struct IndirectEffects
 {
-    bool diffuse = true;        // diffuse light
-    bool tracedDiffuse = false; // by traced rays, emitters and sky seen by them; else prefiltered irradiance, which has neither
-    bool patches = false;       // read diffuse light from the probes' patches, not from prefiltered irradiance; nothing where it is traced
-    bool fieldShadows = false;  // emitters' and the sky's samples shadowed by rays through the light field, not by maps; nothing where rays
-                                // give diffuse light
-    bool rough = true;          // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow
-    bool glossy = true;         // reflections by traced rays
-    bool mirror = true;         // the one ray of perfect mirrors
-    bool denoise = true;        // of the glossy term
-    bool temporal = false;      // filter over time, too, what is filtered over the picture
-    bool tiles = true;          // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
+    bool diffuse = true; // diffuse light
+    bool tracedDiffuse =
+        knobs::diffuse.is("traced"); // by traced rays, emitters and sky seen by them; else prefiltered irradiance, which has neither
+    bool patches = knobs::diffuse.is(
+        "patches"); // read diffuse light from the probes' patches, not from prefiltered irradiance; nothing where it is traced
+    bool fieldShadows = knobs::areaShadows.is("field"); // emitters' and the sky's samples shadowed by rays through the light field, not by
+                                                        // maps; nothing where rays give diffuse light
+    bool rough = true;                     // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow
+    bool glossy = true;                    // reflections by traced rays
+    bool mirror = true;                    // the one ray of perfect mirrors
+    bool denoise = knobs::denoise.value;   // of the glossy term
+    bool temporal = knobs::temporal.value; // filter over time, too, what is filtered over the picture
+    bool tiles = true;                     // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
 };
 
 /// One effect: whether the scene calls for it and why, what it costs, and whether the plan has it.

@@ -1,5 +1,7 @@
 #include "runtime/frame/indirect_light.h"
 
+#include <cassert>
+
 #include "runtime/frame/environment_brdf.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/gather_light_comp.h"
@@ -19,8 +21,7 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
     if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
         return "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) + " is outside 1.." + std::to_string(most) +
                " pixels a side";
-    if (desc.traceEvery < 1 || desc.traceEvery > 16 || !std::has_single_bit(desc.traceEvery))
-        return "one traced pixel of " + std::to_string(desc.traceEvery) + " must be of 1, 2, 4, 8 or 16";
+    if (const std::string fault = faultOf(knobs::traceEvery, desc.traceEvery); !fault.empty()) return fault;
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
     if (desc.effects.diffuse && desc.effects.patches && !desc.effects.tracedDiffuse && !field.holdsPatches())
@@ -180,6 +181,7 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
 
 void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
 {
+    assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT); // the frame before may still read what this one writes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/shadow_masked_frag.h"
@@ -16,21 +17,15 @@ namespace
 
 std::string settingsFault(const DeviceSceneDesc& desc)
 {
-    struct Range
-    {
-        const char* name;
-        uint32_t value, low, high;
-    };
-    const bool maps = desc.light.areaShadows;
-    for (const Range& r : {Range{"maxTextureSize", desc.maxTextureSize, 1, 4096},
-                           Range{"emitterSamples", desc.light.emitterSamples, 0, maps ? 340u : 65536u},
-                           Range{"skySamples", desc.light.skySamples, 0, maps ? 1024u : 65536u},
-                           Range{"sunShadow", desc.light.sunShadow, 256, 8192}, Range{"pointShadow", desc.light.pointShadow, 64, 2048},
-                           Range{"emitterShadow", desc.light.emitterShadow, 32, 1024}, Range{"skyShadow", desc.light.skyShadow, 128, 4096}})
-        if (r.value < r.low || r.value > r.high)
-            return std::string(r.name) + " is " + std::to_string(r.value) + "; give a value in [" + std::to_string(r.low) + ", " +
-                   std::to_string(r.high) + "]";
-    return {};
+    const LightSettings& light = desc.light;
+    const Knob<uint32_t>&emitters = light.areaShadows ? knobs::emitterSamples : knobs::tracedLightSamples,
+          &sky = light.areaShadows ? knobs::skySamples : knobs::tracedLightSamples;
+    for (const auto& [name, knob, value] : {std::tuple{knobs::emitterSamples.name, emitters, light.emitterSamples},
+                                            std::tuple{knobs::skySamples.name, sky, light.skySamples}})
+        if (!knob.inRange(value)) return knob_words::fault(name, knobText(value), rangeText(knob));
+    return firstFault({faultOf(knobs::textureSize, desc.maxTextureSize), faultOf(knobs::sunShadow, light.sunShadow),
+                       faultOf(knobs::pointShadow, light.pointShadow), faultOf(knobs::emitterShadow, light.emitterShadow),
+                       faultOf(knobs::skyShadow, light.skyShadow)});
 }
 
 Result<GpuImage> depthArray(Gpu& gpu, uint32_t size, uint32_t layers, VkFormat format, const char* what)

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/lights.h"
@@ -14,11 +15,12 @@ namespace sconce
 
 struct DeviceSceneDesc
 {
-    uint32_t maxTextureSize = 1024; // texels a side, 1..4096; larger images are filtered down
+    uint32_t maxTextureSize = knobs::textureSize.value; // texels a side; larger images are filtered down
     LightSettings light;
 };
 
-inline constexpr uint32_t kTracedLightSamples = 1024; // of the emitters, and of the sky, where rays shadow them: 112 bytes each, and no map
+inline constexpr uint32_t kTracedLightSamples =
+    knobs::tracedLightSamples.value; // of the emitters, and of the sky, where rays shadow them: 112 bytes each, and no map
 
 /// What frames with these effects need of a scene: without diffuse light, or where rays give it, no samples of emitters and sky, and so no
 /// shadow maps of them; with `fieldShadows` more samples, without maps. A bake needs them always.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/knobs.h"
 #include "runtime/scene/scene_mesh.h"
 #include "scene/scene.h"
 #include "shaders/shared/light_field.h"
@@ -10,16 +11,17 @@
 namespace sconce
 {
 
-/// What light becomes a finite list of.
+/// What light becomes a finite list of. Ranges and prices: base/knobs.h.
 struct LightSettings
 {
-    uint32_t emitterSamples = 64; // patches of emissive surfaces, 0..340; bake time and shadow memory grow with it, noise falls
-    uint32_t skySamples = 48;     // directions of the sky, 0..1024; the same
-    bool areaShadows = true;      // maps for both; without, they cost no memory, and there may be 65,536 of either
-    uint32_t sunShadow = 4096;    // texels a side of a directional light's map, 256..8192
-    uint32_t pointShadow = 512;   // texels a side of a point light's six faces, 64..2048
-    uint32_t emitterShadow = 256; // the same for emitter samples, 32..1024
-    uint32_t skyShadow = 1024;    // texels a side of a sky direction's map, 128..4096
+    uint32_t emitterSamples =
+        knobs::emitterSamples.value;                 // patches of emissive surfaces; bake time and shadow memory grow with it, noise falls
+    uint32_t skySamples = knobs::skySamples.value;   // directions of the sky; the same
+    bool areaShadows = true;                         // maps for both; without, they cost no memory, and there may be 65,536 of either
+    uint32_t sunShadow = knobs::sunShadow.value;     // texels a side of a directional light's map
+    uint32_t pointShadow = knobs::pointShadow.value; // texels a side of a point light's six faces
+    uint32_t emitterShadow = knobs::emitterShadow.value; // the same for emitter samples
+    uint32_t skyShadow = knobs::skyShadow.value;         // texels a side of a sky direction's map
 };
 
 /// The scene's light as a list (order: shaders/shared/lights.h) and the views that its shadow maps are rendered with.

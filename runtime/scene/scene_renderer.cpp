@@ -230,8 +230,10 @@ Status SceneRenderer::makeCompose()
 Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
                                                              const RenderSettings& settings)
 {
-    if (settings.glossyRays < 1 || settings.glossyRays > 256)
-        return Error{ErrorCode::badArgument, "glossy rays a pixel " + std::to_string(settings.glossyRays) + " must be 1..256"};
+    const std::string fault = firstFault({faultOf(knobs::glossyRays, settings.glossyRays), faultOf(knobs::raysBelow, settings.raysBelow),
+                                          faultOf(knobs::areaSamples, settings.areaSamples),
+                                          settings.roughness ? faultOf(knobs::roughness, *settings.roughness) : std::string()});
+    if (!fault.empty()) return Error{ErrorCode::badArgument, fault};
     const bool mapless = std::ranges::any_of(scene.lights().lights, [](const gpu::GpuLight& l) { return l.shadowLayer == kNoShadowMap; });
     if (mapless && settings.effects.diffuse && !settings.effects.tracedDiffuse && !settings.effects.fieldShadows)
         return Error{ErrorCode::badArgument,

@@ -10,19 +10,20 @@ namespace sconce
 {
 
 /// A small deferred renderer around IndirectLight: what `sconce render` and the bench draw with, and an example of a host.
+/// Ranges and prices: base/knobs.h.
 struct RenderSettings
 {
-    uint32_t width = 960, height = 540; // pixels, 1..16384
-    uint32_t glossyRays = 1;            // rays a pixel, 1..256; time of the trace grows in proportion
-    uint32_t traceEvery = 1;            // as in IndirectLight::Desc
+    uint32_t width = knobs::width.value, height = knobs::height.value; // pixels
+    uint32_t glossyRays = knobs::glossyRays.value;                     // rays a pixel; time of the trace grows in proportion
+    uint32_t traceEvery = knobs::traceEvery.value;                     // as in IndirectLight::Desc
     IndirectEffects effects;
-    bool layers = true;                // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
-    float raysBelow = gpu::kRaysBelow; // [0,1] roughness: reflections below it are traced, above it read from prefiltered radiance
-    std::optional<float> roughness;    // [0,1]: every surface has this roughness (the benchmark of both papers)
-    uint32_t areaSamples = 8;          // samples of the emitters, and as many of the sky, a pixel, 1..1024; noise falls with the root
-    uint32_t seed = 1;
-    Spirv glossyShader;         // as makeIndirectLight() takes it
-    float normalOffset = 1e-4f; // share of the scene's diagonal that rays start off their surface
+    bool layers = true;                              // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
+    float raysBelow = knobs::raysBelow.value;        // roughness: reflections below it are traced, above it read from prefiltered radiance
+    std::optional<float> roughness;                  // [0,1]: every surface has this roughness (the benchmark of both papers)
+    uint32_t areaSamples = knobs::areaSamples.value; // samples of the emitters, and as many of the sky, a pixel; noise falls with the root
+    uint32_t seed = knobs::frameSeed.value;
+    Spirv glossyShader;                             // as makeIndirectLight() takes it
+    float normalOffset = knobs::normalOffset.value; // share of the scene's diagonal that rays start off their surface
 };
 
 /// One frame in host memory, row 0 at the top.

@@ -53,6 +53,7 @@ SCONCE_STRUCTS_END
 
 #ifndef __cplusplus
 #include "shared/brdf.h"
+#include "shared/sample_pair.h"
 
 /// How much of a surface's reflections traced rays give, [0,1]; prefiltered radiance gives the rest.
 float shareOfRays(float roughness, float raysBelow) { return 1.0 - smoothstep(raysBelow - kRaysBlend, raysBelow + kRaysBlend, roughness); }
@@ -66,27 +67,6 @@ uint termsOf(BrdfSurface s, float raysBelow)
     if (rays > 0.0) terms |= 1u << kTermGlossy;
     if (rays < 1.0) terms |= 1u << kTermRough;
     return terms;
-}
-
-uint spreadBits(uint v) // bit i to bit 2 i, of the lower 8
-{
-    v = (v | (v << 4u)) & 0x0f0fu;
-    v = (v | (v << 2u)) & 0x3333u;
-    return (v | (v << 1u)) & 0x5555u;
-}
-
-/// Two numbers uniform in [0,1)^2 for a sample (0..63) of a pixel: the R2 sequence (Roberts 2018, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences") along a Morton curve over the picture, so that neighbouring pixels take well-spread samples and a filter over
-/// them converges faster than over independent ones. Streams and seeds are shifted against each other (PCG hash).
-vec2 randomPair(uvec2 pixel, uint sampleIndex, uint stream, uint seed)
-{
-    uint n = ((spreadBits(pixel.x & 255u) | (spreadBits(pixel.y & 255u) << 1u)) << 6u) | sampleIndex;
-    uint state = (stream * 747796405u + seed * 2891336453u) ^ ((pixel.x >> 8u) * 0x9e3779b9u + (pixel.y >> 8u) * 0x85ebca6bu);
-    state = state * 747796405u + 2891336453u;
-    uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    word = (word >> 22u) ^ word;
-    uvec2 u = uvec2(n * 3242174889u + word, n * 2447445414u + word * 2654435769u); // 2^32 / p and 2^32 / p^2, p^3 = p + 1
-    return vec2(u >> 8u) * (1.0 / 16777216.0);
 }
 #endif
 

@@ -146,7 +146,8 @@ TEST(BuildOctree, RefusesWhatItCantDoWithASentence)
 {
     FieldData field = dividedBox(16);
     EXPECT_NE(buildOctree({field.info, {}, field.distance}, {}).error().message.find("at least one probe"), std::string::npos);
-    EXPECT_NE(buildOctree({field.info, field.probes, field.distance}, {.voxels = 4}).error().message.find("voxels 4"), std::string::npos);
+    EXPECT_NE(buildOctree({field.info, field.probes, field.distance}, {.voxels = 4}).error().message.find("voxels is 4"),
+              std::string::npos);
     field.info.chart = gpu::kChartOctahedral;
     EXPECT_NE(buildOctree({field.info, field.probes, field.distance}, {}).error().message.find("cube"), std::string::npos);
 }

@@ -15,7 +15,7 @@ namespace
 {
 
 const std::vector<std::string> kCommands = {"scenes", "doctor", "check",     "place",   "bake",  "info", "verify",
-                                            "render", "trace",  "reference", "compare", "bench", "tune"};
+                                            "render", "trace",  "reference", "compare", "bench", "tune", "knobs"};
 
 /// stdout as JSON; a failure prints everything there was.
 json jsonOf(const CommandResult& result)
@@ -79,6 +79,78 @@ TEST(Command, HelpOfEveryOptionStatesItsDefault)
         check();
     }
     EXPECT_NE(sconceCommand({"--version"}).out.find('.'), std::string::npos);
+}
+
+/// What --help says of "COMMAND --OPTION", in one line; empty: there is no such option.
+std::string helpOf(const std::string& commandAndOption)
+{
+    const size_t space = commandAndOption.find(' ');
+    std::istringstream lines(sconceCommand({commandAndOption.substr(0, space), "--help"}).out);
+    std::string entry;
+    bool found = false;
+    for (std::string line; std::getline(lines, line);)
+    {
+        std::istringstream words(line);
+        std::string word;
+        if (line.starts_with("  -"))
+        {
+            if (found) break;
+            words >> word;
+            found = ("," + word + ",").find("," + commandAndOption.substr(space + 1) + ",") != std::string::npos;
+        }
+        while (found && words >> word) entry += (entry.empty() ? "" : " ") + word;
+    }
+    return entry;
+}
+
+TEST(Command, KnobsAreWhatHelpSays)
+{
+    for (const json& row : jsonOf(sconceCommand({"knobs", "--json"})))
+    {
+        const std::string option = row.at("option"), range = row.at("range");
+        if (option.empty() || option.ends_with("--size")) continue; // --size is two knobs, WxH
+        const std::string help = helpOf(option);
+        EXPECT_NE(help.find("(default: " + row.at("default").get<std::string>()), std::string::npos) << option << ": " << help;
+        if (range == "on, off") continue; // a flag is either
+        std::string choices = range;
+        for (size_t at = 0; (at = choices.find(", ", at)) != std::string::npos;) choices.replace(at, 2, "|");
+        EXPECT_TRUE(help.find("; range: " + range + ")") != std::string::npos || help.find(choices) != std::string::npos)
+            << option << ", " << range << ": " << help;
+    }
+}
+
+// A help text that says a number of its own is one that nobody remembers when the number changes.
+TEST(Command, NoHelpTextTypesADefaultOrARange)
+{
+    const std::filesystem::path helper = "knob_options.cpp"; // the one place that writes the words
+    for (const auto& file : std::filesystem::directory_iterator(SCONCE_SOURCES "/tools"))
+    {
+        if (file.path().extension() != ".cpp" || file.path().filename() == helper) continue;
+        const std::string text = readText(file.path());
+        for (const char* word : {"(default", "range: 0", "range: 1", "range: >", "CLI::Range", "CLI::PositiveNumber"})
+            EXPECT_EQ(text.find(word), std::string::npos) << file.path() << ": " << word;
+    }
+}
+
+TEST(Command, ReadmeHasTheTableOfKnobs)
+{
+    const std::string readme = readText(SCONCE_SOURCES "/README.md"), begin = "<!-- knobs -->\n", end = "<!-- /knobs -->";
+    const size_t first = readme.find(begin), last = readme.find(end);
+    ASSERT_TRUE(first != std::string::npos && last != std::string::npos);
+    EXPECT_EQ(readme.substr(first + begin.size(), last - first - begin.size()), sconceCommand({"knobs", "--markdown"}).out)
+        << "put what `sconce knobs --markdown` prints between the two marks";
+}
+
+// What 65 rays would be is what 64 are: tests/shaders/sample_pair_test.cpp.
+TEST(Command, MoreRaysThanThereAreDifferentOnesAreRefused)
+{
+    const CommandResult result = sconceCommand({"render", "cornell", "--field", "f.sconce", "-o", "x.exr", "--samples", "65"});
+    EXPECT_EQ(result.exit, 2);
+    EXPECT_NE(result.err.find("--samples: it can't be '65'; give 1 to 64 rays a pixel."), std::string::npos) << result.err;
+    const TestFolder folder;
+    writeText(folder / "settings.json", R"({"quality": 1, "settings": {"rays": 65}})");
+    expectSentence(sconceCommand({"render", "cornell", "--field", "f.sconce", "-o", "x.exr", "--quality", folder / "settings.json"}), 3,
+                   "'rays' can't be 65; give 1 to 64 rays a pixel");
 }
 
 TEST(Command, WrongUsageExitsWith2)

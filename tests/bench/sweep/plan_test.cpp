@@ -7,6 +7,7 @@
 #include "bench/sweep/keys.h"
 #include "bench/sweep/probe_sets.h"
 #include "bench/sweep/sweep.h"
+#include "bench/sweep/tune.h"
 #include "scene/builtin_scenes.h"
 
 namespace sconce
@@ -36,7 +37,7 @@ TEST(Plan, BeginsWithOursAndHasEveryMethodAndKnobOnce)
         if (point.settings.method == "ours") knobsOfOurs.insert(point.knob);
     }
     EXPECT_EQ(methods, (std::set<std::string>{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", "path tracer"}));
-    for (const Knob& knob : knobs())
+    for (const SweptKnob& knob : sweptKnobs())
         EXPECT_EQ(knobsOfOurs.contains(std::string(knob.name)), std::ranges::find(knob.methods, "ours") != knob.methods.end()) << knob.name;
 }
 
@@ -66,12 +67,29 @@ TEST(Settings, OfEveryPlannedPointComeBackFromTheirJson)
 // "field" for a knob that is on or off was left out of the sweep without a word.
 TEST(Settings, EveryValueOfASweepIsOneOfItsKnob)
 {
-    for (const Knob& knob : knobs())
+    for (const SweptKnob& knob : sweptKnobs())
         for (const std::string_view value : knob.sweep)
         {
             PointSettings settings;
             EXPECT_TRUE(knob.set(settings, value)) << knob.name << " " << value;
         }
+    for (const QualityLevel& level : qualityLevels()) // by the values' texts, as files of settings have them
+    {
+        PointSettings settings;
+        applyLevel(settings, level);
+        EXPECT_TRUE(settingsFrom("ours", settingsJson(settings)).ok()) << level.name;
+    }
+}
+
+// `set` holds to the table: nothing beyond a knob's range can be swept or come from a file.
+TEST(Settings, AValueBeyondTheRangeOfItsKnobIsRefused)
+{
+    PointSettings settings;
+    for (const auto& [name, value] : {std::pair{"rays", "65"}, std::pair{"rays", "0"}, std::pair{"trace every", "3"},
+                                      std::pair{"opinion", "nan"}, std::pair{"placement", "anywhere"}, std::pair{"hand-offs", "65"}})
+        EXPECT_FALSE(findKnob(name)->set(settings, value)) << name << " " << value;
+    EXPECT_EQ(settingsJson(settings), settingsJson(PointSettings()));
+    EXPECT_NE(settingsFrom("ours", {{"rays", 65}}).error().message.find("give 1 to 64 rays a pixel"), std::string::npos);
 }
 
 TEST(Keys, TellScenesAndSettingsApart)

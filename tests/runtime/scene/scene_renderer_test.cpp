@@ -290,6 +290,21 @@ TEST_F(SceneRendererTest, OddSizesWork)
     }
 }
 
+TEST_F(SceneRendererTest, AKnobBeyondItsRangeIsRefusedWithASentence)
+{
+    const auto refusal = [this](auto change)
+    {
+        RenderSettings settings = settingsFor();
+        change(settings);
+        const auto frame = draw(*makeBuiltinScene("cornell"), std::span(kCornellProbes).first(1), settings);
+        return frame ? std::string("was drawn") : frame.error().message;
+    };
+    EXPECT_EQ(refusal([](RenderSettings& s) { s.glossyRays = 65; }), "glossyRays is 65; give 1 to 64 rays a pixel");
+    EXPECT_EQ(refusal([](RenderSettings& s) { s.glossyRays = 0; }), "glossyRays is 0; give 1 to 64 rays a pixel");
+    EXPECT_EQ(refusal([](RenderSettings& s) { s.traceEvery = 3; }), "traceEvery is 3; give 1, 2, 4, 8, 16 pixels");
+    EXPECT_EQ(refusal([](RenderSettings& s) { s.raysBelow = NAN; }), "raysBelow is nan; give 0 to 2 roughness");
+}
+
 TEST_F(SceneRendererTest, EmptyFrameIsRefusedWithASentence)
 {
     RenderSettings settings = settingsFor();

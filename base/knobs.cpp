@@ -1,0 +1,162 @@
+#include "base/knobs.h"
+
+#include <cstdio>
+
+namespace sconce
+{
+
+std::string knobText(uint32_t value)
+{
+    return value == knobs::kMost32 ? "2^32-1" : std::to_string(value);
+}
+
+std::string knobText(int value)
+{
+    return std::to_string(value);
+}
+
+std::string knobText(uint64_t value)
+{
+    return value == knobs::kMost64 ? "2^64-1" : std::to_string(value);
+}
+
+std::string knobText(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    std::string shown = text;
+    if (const size_t e = shown.find('e'); e != std::string::npos) // 1e-6, not 1e-06; 1e6, not 1e+06
+    {
+        const size_t sign = e + 1, digit = shown.find_first_not_of("+-0", sign);
+        shown.replace(sign, digit - sign, shown[sign] == '-' ? "-" : "");
+    }
+    return shown;
+}
+
+std::string knobText(float value)
+{
+    return knobText(double(value)); // six digits hide what a float adds to 0.995
+}
+
+std::string knobText(bool value)
+{
+    return value ? "on" : "off";
+}
+
+std::string knobText(std::string_view value)
+{
+    return std::string(value);
+}
+
+namespace knob_words
+{
+
+std::string range(const std::vector<std::string>& only, const std::string& least, const std::string& most, std::string_view unit,
+                  std::string_view also)
+{
+    std::string text = most.empty() ? least : least + " to " + most;
+    if (most.empty() && !least.empty() && !least.starts_with("above")) text += " or more";
+    if (!only.empty())
+    {
+        text.clear();
+        for (const std::string& one : only) text += (text.empty() ? "" : ", ") + one;
+    }
+    if (!unit.empty()) text.append(" ").append(unit);
+    if (!also.empty()) text.append(", ").append(also);
+    return text;
+}
+
+std::string fault(std::string_view name, const std::string& value, const std::string& range)
+{
+    return std::string(name) + " is " + (value.empty() ? "''" : value) + "; give " + range;
+}
+
+} // namespace knob_words
+
+std::span<const KnobRow> knobRows()
+{
+    using namespace knobs;
+    static const std::vector<KnobRow> rows = {rowOf(method),
+                                              rowOf(count),
+                                              rowOf(coverage),
+                                              rowOf(mapBytes),
+                                              rowOf(placeSeed),
+                                              rowOf(clearance),
+                                              rowOf(distanceVoxels),
+                                              rowOf(candidates),
+                                              rowOf(surfels),
+                                              rowOf(refine),
+                                              rowOf(refineRounds),
+                                              rowOf(relocateRounds),
+                                              rowOf(refineSurfels),
+                                              rowOf(resolution),
+                                              rowOf(bounces),
+                                              rowOf(converged),
+                                              rowOf(chart),
+                                              rowOf(deviceMebibytes),
+                                              rowOf(hostBytes),
+                                              rowOf(octreeVoxels),
+                                              rowOf(topShift),
+                                              rowOf(textureSize),
+                                              rowOf(emitterSamples),
+                                              rowOf(skySamples),
+                                              rowOf(tracedLightSamples),
+                                              rowOf(sunShadow),
+                                              rowOf(pointShadow),
+                                              rowOf(emitterShadow),
+                                              rowOf(skyShadow),
+                                              rowOf(glossyRays),
+                                              rowOf(diffuse),
+                                              rowOf(areaShadows),
+                                              rowOf(traceEvery),
+                                              rowOf(raysBelow),
+                                              rowOf(areaSamples),
+                                              rowOf(denoise),
+                                              rowOf(temporal),
+                                              rowOf(normalOffset),
+                                              rowOf(roughness),
+                                              rowOf(frameSeed),
+                                              rowOf(drawnFrames),
+                                              rowOf(width),
+                                              rowOf(height),
+                                              rowOf(verticalFov),
+                                              rowOf(exposure),
+                                              rowOf(light),
+                                              rowOf(ranked),
+                                              rowOf(opinion),
+                                              rowOf(maxHandoffs),
+                                              rowOf(startLevel),
+                                              rowOf(coarsestLevel),
+                                              rowOf(tolerance),
+                                              rowOf(epsilon),
+                                              rowOf(farBounds),
+                                              rowOf(paths),
+                                              rowOf(pathBounces),
+                                              rowOf(pathSeed),
+                                              rowOf(pixelCentre),
+                                              rowOf(benchProbes),
+                                              rowOf(benchResolution),
+                                              rowOf(referenceBounces),
+                                              rowOf(benchBounces),
+                                              rowOf(benchWidth),
+                                              rowOf(benchHeight),
+                                              rowOf(judgedRays),
+                                              rowOf(timedFrames),
+                                              rowOf(warmUp),
+                                              rowOf(referencePaths),
+                                              rowOf(benchSeed),
+                                              rowOf(groupMebibytes),
+                                              rowOf(placement),
+                                              rowOf(lowFactor),
+                                              rowOf(distanceBits),
+                                              rowOf(tracedPaths),
+                                              rowOf(timedRuns),
+                                              rowOf(timedRays),
+                                              rowOf(goalTime),
+                                              rowOf(goalError),
+                                              rowOf(goalMemory),
+                                              rowOf(goalMetric)};
+    return rows;
+}
+
+} // namespace sconce

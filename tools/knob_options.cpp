@@ -1,0 +1,16 @@
+#include "tools/knob_options.h"
+
+namespace sconce::tools
+{
+
+std::string described(std::string_view what, const std::string& byDefault, const std::string& range)
+{
+    return std::string(what) + " (default: " + byDefault + (range.empty() ? "" : "; range: " + range) + ")";
+}
+
+std::string described(std::string_view what, Words byDefault, const std::string& range)
+{
+    return described(what, std::string(byDefault.text), range);
+}
+
+} // namespace sconce::tools
