@@ -31,6 +31,9 @@ constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
 void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 {
+    // Read after write: a probe's passes read each other's results, and copyOut() takes the last. They also overwrite what earlier ones
+    // read (the coarse cells are made twice), which the same barrier orders. All memory rather than single buffers: nothing else runs
+    // beside the bake.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
@@ -171,10 +174,13 @@ void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::sp
 void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
 {
     const uint32_t n = info.faceSize;
+    // The faces of the probe before are dropped (undefined), and the passes that read them are done, since submit() waited: nothing to wait
+    // for.
     transition(gpu, cmd, surfaceImage,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
     const VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    // Depth likewise. Both stages of tests: which of them reads and writes depth is the driver's choice.
     transition(gpu, cmd, depthImage,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE, tests, 0,
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
@@ -215,10 +221,12 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
         }
     }
     gpu.vk.CmdEndRendering(cmd);
+    // Read after write: compute passes alone sample the faces, to make the maps.
     transition(gpu, cmd, surfaceImage,
                {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    // The same for depth, whichever tests wrote it.
     transition(gpu, cmd, depthImage,
                {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, tests,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -304,6 +312,8 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
             copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
             if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
+            // The fence that submit() waits for says that the copies are done, not that the host sees them: that takes a barrier to the
+            // host's stage.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });
@@ -342,6 +352,8 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
                                             {wordBytes + 2 * radianceBytes, 2 * radianceBytes, radianceBytes}};
             gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), words.handle(), 1, &toWords);
             gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), emitters ? 3 : 2, toLight);
+            // Read after write: the passes read what is copied in. Write after read: the copies out, below, overwrite the transfer buffer
+            // that these copies read. What the host wrote into it is visible by the submit itself.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
                           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
@@ -351,6 +363,7 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
             recordGather(cmd, false);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);
+            // For the host's reads, which the fence alone doesn't cover.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });

@@ -86,6 +86,7 @@ public:
             [&](VkCommandBuffer cmd)
             {
                 gpu.vk.CmdFillBuffer(cmd, surfels.handle(), 0, VK_WHOLE_SIZE, gpu::kNoSurfel);
+                // The samples enter by atomic minima, which read the fill and write over it.
                 memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
@@ -138,6 +139,7 @@ private:
             [&](VkCommandBuffer cmd)
             {
                 // What an earlier submit wrote is visible: its fence was waited for, and only device memory access is left to order.
+                // From all commands: that was an upload's copy, the fill or another pass.
                 memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);

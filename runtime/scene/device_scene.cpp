@@ -209,6 +209,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, 7, VK_FORMAT_D32_SFLOAT, nearestCompare, "The emitters' shadow maps"}};
     const auto toAttachment = [&](VkCommandBuffer cmd, const GpuImage& maps)
     {
+        // New images: nothing used them. Each layer is cleared where it is drawn.
         transition(gpu, cmd, maps,
                    {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
@@ -216,6 +217,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
     };
     const auto toSampled = [&](VkCommandBuffer cmd, const GpuImage& maps)
     {
+        // Read after write, for the draws of all submits before. All commands: who samples the scene's set first is not known here.
         transition(gpu, cmd, maps,
                    {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,

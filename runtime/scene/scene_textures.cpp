@@ -162,6 +162,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // A new image: nothing used it. In a submit of its own, since the copies come in many.
             transition(gpu, cmd, array.image,
                        {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                         VK_PIPELINE_STAGE_2_COPY_BIT, 0, VK_ACCESS_2_TRANSFER_WRITE_BIT});
@@ -201,6 +202,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
     status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // Read after write, for the copies of all submits before. All commands: which draw or pass samples it first is not known here.
             transition(gpu, cmd, array.image,
                        {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});

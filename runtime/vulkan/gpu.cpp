@@ -237,6 +237,8 @@ Status Gpu::upload(const Buffer& target, VkDeviceSize offset, std::span<const st
             {
                 const VkBufferCopy copy{0, offset + done, part};
                 vk.CmdCopyBuffer(cmd, staging.handle(), target.handle(), 1, &copy);
+                // Whoever uses the target next, in whatever stage, and in later submits to the queue, which a barrier reaches too: they
+                // need none for uploads.
                 memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
             });
@@ -255,10 +257,12 @@ Status Gpu::download(const Buffer& source, VkDeviceSize offset, std::span<std::b
         auto status = submit(
             [&](VkCommandBuffer cmd)
             {
+                // Read after write: what filled the source, in an earlier submit, is not known here.
                 memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
                 const VkBufferCopy copy{offset + done, 0, part};
                 vk.CmdCopyBuffer(cmd, source.handle(), staging.handle(), 1, &copy);
+                // For the host's reads, which the fence alone doesn't cover.
                 memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                               VK_ACCESS_2_HOST_READ_BIT);
             });

@@ -57,6 +57,8 @@ void noteName(std::set<std::string_view> NanScan::Coverage::*set, const char* na
 
 void everythingBefore(const Gpu& gpu, VkCommandBuffer cmd)
 {
+    // Any pass may have written what is scanned, and any may use it next; scans share one scratch buffer besides. A diagnosis can afford to
+    // let nothing overlap.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
@@ -131,6 +133,7 @@ void NanScan::image(VkCommandBuffer cmd, const char* pass, const GpuImage& image
     constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     constexpr VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    // As wide for the same reason: the writer may be a draw or a pass.
     transition(gpu, cmd, image, {layout, source, all, all, any, any});
     const uint32_t rows = uint32_t(kScratchBytes / 4 / (VkDeviceSize(wordsAPixel) * width));
     for (uint32_t layer = 0; layer < layers; ++layer)
@@ -147,6 +150,7 @@ void NanScan::image(VkCommandBuffer cmd, const char* pass, const GpuImage& image
             words.kind = kind;
             dispatch(cmd, scratch.address(), wordsAPixel * width * high, wordsAPixel * width * (layer * height + y), words);
         }
+    // Back to what the frame's own barriers and descriptors take it to be in.
     transition(gpu, cmd, image, {source, layout, all, all, any, any});
 }
 
