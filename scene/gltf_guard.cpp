@@ -364,6 +364,7 @@ Result<GuardedGltf> openGltf(const fs::path& file)
         for (const Bytes& buffer : out.buffers) sizes.push_back(buffer.size());
         if (Status status = checkLayout(gltf, sizes); !status) return Error{status.error().code, name + ": " + status.error().message};
         if (Status status = listImages(gltf, out); !status) return Error{status.error().code, name + ": " + status.error().message};
+        // The parser sees JSON that names no data: what it could be led to open has been read, and checked, here.
         gltf.erase("buffers");
         gltf.erase("images");
         out.json = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);

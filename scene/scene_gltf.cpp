@@ -538,6 +538,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
         surface.baseColorTexture.image >= 0 || surface.metallicRoughnessTexture.image >= 0 || surface.emissionTexture.image >= 0;
     if (textured && !uvs) note("A textured mesh has no texture coordinates; its textures are read at (0,0).");
 
+    // Primitives may share one accessor of all vertices: only those that the triangles of this one name are copied.
     std::vector<uint32_t> used(*corners);
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -583,6 +584,7 @@ Result<uint32_t> Importer::materialOf(int index)
     m.roughness = clamped(pbr.roughnessFactor);
     m.doubleSided = source.doubleSided;
     if (source.alphaMode == "MASK") m.alphaCutoff = float(std::max(source.alphaCutoff, 0.0));
+    // Nothing here blends: what is more opaque than not is solid, the rest is not there.
     if (source.alphaMode == "BLEND") m.alphaCutoff = 0.5f;
     double strength = 1.0;
     if (const auto it = source.extensions.find("KHR_materials_emissive_strength"); it != source.extensions.end())
@@ -711,7 +713,9 @@ Status Importer::place(const Piece& piece, const dmat4& world)
     };
     for (uvec3 t : piece.triangles)
     {
+        // A negative determinant turns the winding, glTF 2.0 section 3.7.4.
         if (mirrored) std::swap(t.y, t.z);
+        // In double, but of the positions as they are kept: a triangle that rounding has flattened has no area either.
         const dvec3 a(positions[t.x]), cross = glm::cross(dvec3(positions[t.y]) - a, dvec3(positions[t.z]) - a);
         const double area = glm::length(cross);
         if (!(area > 0.0))

@@ -80,6 +80,7 @@ Status ProbeBaker::createBuffers()
         uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWordsPerProbe + (octahedral ? faceTexels : 0);
     std::vector<Need> needs = {{words, info.wordsPerProbe, MemoryUse::device, "A probe's distance words"},
                                {light, 4ull * radianceWords, MemoryUse::device, "A probe's radiance"},
+                               // Six faces of 32 x 32 cells, four words each: more than the octahedral map's 64 x 64 (recordGather).
                                {cells, 4ull * 6 * 32 * 32, MemoryUse::device, "A probe's coarse cells"},
                                {irradiance, kIrradianceWordsPerProbe, MemoryUse::device, "A probe's irradiance"},
                                {transfer, transferWords, MemoryUse::readback, "The bake's transfer buffer"}};

@@ -144,6 +144,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.set.write(1, made.probes);
     made.set.write(3, made.patches);
     made.set.write(2, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    // Last: the block that it fills holds the addresses of the buffers above.
     if (auto status = made.setQuality(quality); !status) return status.error();
     return LightField(state);
 }
@@ -273,6 +274,7 @@ void recordTrace(const RayTracer& tracer, VkCommandBuffer cmd, const Buffer& ray
 Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds) const
 {
     assert(rays.size() == hits.size());
+    // 16 MiB of hits, as much as one staging copy takes.
     constexpr size_t kPiece = size_t(1) << 18;
     const size_t piece = std::min(rays.size(), kPiece);
     if (milliseconds) *milliseconds = 0.0;

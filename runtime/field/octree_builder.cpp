@@ -104,6 +104,7 @@ public:
     {
         const ivec3 blocks = (plan.build.count + gpu::kBlock - 1) / gpu::kBlock;
         const uint32_t count = uint32_t(blocks.x) * uint32_t(blocks.y) * uint32_t(blocks.z);
+        // A submit must end soon: drivers stop one that hangs, and progress and cancellation come between submits.
         const uint64_t judgesABlock = 64ull * plan.build.candidates * 25;
         const uint32_t together = uint32_t(std::clamp<uint64_t>(kJudgesASubmit / judgesABlock, 1, 32768));
         for (uint32_t first = 0; first < count; first += together)

@@ -186,6 +186,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     made.set.write(2, made.data.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, made.textureSampler.handle());
     made.set.write(3, made.lightBuffer);
     if (auto status = made.makeShadowMaps(gpu, progress); !status) return status.error();
+    // Served the uploads only, so it goes before the scene's bytes are counted.
     gpu.releaseStaging();
     made.bytes = gpu.memory().used() - before;
     return made;
@@ -250,8 +251,11 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
             if (kind.maps) to(cmd, kind.maps);
         if (noMaps) to(cmd, noMaps);
     };
+    // All layers at once and before any draw: the draws are submits of their own, and a transition from undefined drops what an image
+    // holds.
     auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); });
     if (!status) return status;
+    // A pipeline names the format of the depth it draws to: one for each format in use.
     DepthPipelines pipelines[2];
     for (int i = 0; i < 2; ++i)
     {
@@ -260,6 +264,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         if (!made) return made.error();
         pipelines[i] = std::move(*made);
     }
+    // A submit for each light rather than one for all, so that a bake can tell how far it is and be stopped.
     SceneDraws draws;
     for (size_t i = 0; i < lightList.lights.size(); ++i)
     {

@@ -139,10 +139,12 @@ Status SceneRenderer::make()
     if (!block) return block.error();
     frameBlock = std::move(*block);
     gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    // Once: the images of the G-buffer stay the same in all frames.
     indirect->setInputs(gBuffer);
 
     const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
+    // Below 0: surfaces keep their own. A specialization constant is 32 bits of any type, here a float's.
     const float roughness = settings.roughness.value_or(-1.0f);
     uint32_t specialization = 0;
     std::memcpy(&specialization, &roughness, sizeof roughness);
@@ -331,6 +333,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     view.size = {settings.width, settings.height};
     view.glossyRays = settings.glossyRays;
     view.raysBelow = settings.raysBelow;
+    // Without a frame before, or after a cut, view.follows stays 0 and histories count for nothing.
     if (before)
     {
         view.follows = 1;
@@ -351,6 +354,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     // writes.
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
+    // Recorded, not written by the host: the frame before may still be running with its own view.
     gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
     // Read after write: the view, which is all that the update wrote.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
@@ -384,6 +388,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "area light", indirect->state().diffuseImage);
     }
+    // After the area lights, whose noise is filtered together with the rest of the diffuse term.
     if (denoiser)
     {
         if (timer) timer->begin(cmd, "diffuse denoise");
@@ -457,6 +462,7 @@ uint64_t SceneRenderer::deviceBytes() const
 Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
 {
     if (const std::string fault = cameraFault(camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    // Room for every pass that a frame can have, 13.
     auto timer = GpuTimer::create(gpu, 16);
     if (!timer) return timer.error();
     auto status = gpu.submit(

@@ -147,11 +147,13 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
         else
             use(material.baseColorTexture), use(material.emissionTexture);
     }
+    // All layers of an array have one size. A power of two, so that every mip is exactly half of the one above.
     size = std::min(size, std::bit_floor(maxSize));
 
     ImageDesc desc;
     desc.format = kind == TextureKind::color ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
     desc.width = desc.height = size;
+    // A scene without textures has a layer too: its binding wants an image, and no material names it.
     desc.layers = std::max(uint32_t(layers.size()), 1u);
     desc.mips = uint32_t(std::bit_width(size));
     desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;

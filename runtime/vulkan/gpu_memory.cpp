@@ -122,6 +122,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
                                                  " refused more; lower the resolution or raise the memory budget"};
     };
     if (heldBytes + size > budgetBytes) return refused("the budget");
+    // Every buffer has a device address, and its memory must have been allocated for that; images need none.
     VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, linear ? &flags : nullptr};
@@ -144,6 +145,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
         void* pointer = nullptr;
         if (vk.MapMemory(host.device, added->memory, 0, VK_WHOLE_SIZE, 0, &pointer) != VK_SUCCESS)
         {
+            // The block is given back as if one piece of its whole size were, so that the budget is right again.
             Piece whole{added, 0, size};
             added->free.clear();
             release(whole);
@@ -168,6 +170,8 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
             if (const auto offset = block.take(needs.size, needs.alignment)) return Piece{&block, *offset, needs.size};
         }
     }
+    // Near the end of the budget a small resource gets a block of its own size: a shared one would be refused for room that nobody asked
+    // for.
     const bool shared = needs.size < kLargeBytes && heldBytes + kBlockBytes <= budgetBytes;
     auto block = addBlock(shared ? kBlockBytes : needs.size, uint32_t(type), linear, mapped, needs.size, what);
     if (!block) return block.error();
