@@ -77,6 +77,7 @@ Result<std::unique_ptr<NanScan>> NanScan::create(Gpu& gpu)
     auto places = gpu.makeBuffer(kScans * sizeof(uint32_t), 0, MemoryUse::readback, "findings of the scan for NaN");
     if (!places) return places.error();
     made->places = std::move(*places);
+    // A scan lowers its place by an atomic minimum: 'nothing found' is the largest number there is.
     std::memset(made->places.mapped(), 0xff, made->places.size());
     made->scans.reserve(kScans);
     return made;
@@ -84,6 +85,7 @@ Result<std::unique_ptr<NanScan>> NanScan::create(Gpu& gpu)
 
 bool NanScan::takeSlot(const Scan& scan)
 {
+    // Remembered rather than reported here, in the middle of recording; findings() tells.
     tooMany = tooMany || scans.size() == kScans;
     if (tooMany) return false;
     scans.push_back(scan);
