@@ -207,6 +207,7 @@ Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
 Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
 {
     // The whole field's irradiance as it was before this bounce, so that the order of the probes doesn't matter.
+    // Without radiance: a bounce reads irradiance and what weighs it, and the device has only that to hold.
     FieldData lit;
     lit.info = field.info;
     lit.probes = field.probes;

@@ -57,6 +57,7 @@ Status ProbeBaker::createBuffers()
     const uint32_t n = info.faceSize, faceTexels = 6 * n * n;
     ImageDesc desc;
     desc.width = n;
+    // The six faces below one another: one image, one render pass, one pair of transitions.
     desc.height = 6 * n;
     desc.format = kSurfaceFormat;
     desc.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -239,6 +240,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 {
     const uint32_t n = info.faceSize;
     Push push = pushFor(centre);
+    // The octahedral map is resampled from cube faces: the surface pass writes those to buffers of their own first.
     if (octahedral)
     {
         push.words = faceWords.address();
@@ -264,6 +266,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     }
     scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
     scanBuffer(gpu, cmd, "bake surfaces", faceLight, {.kind = gpu::kScanRadiance, .count = VkDeviceSize(6) * n * n});
+    // From here on the targets are the field's again, and the faces are what is read.
     push = pushFor(centre);
     push.extra = faceLight.address();
     const VkDescriptorSet imagesOnly[] = {images.handle()};
@@ -276,6 +279,8 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
 {
     Push push = pushFor(vec3(0.0f));
+    // A direction's sum runs over all cells, so texels are joined into coarse ones first. The moments' lobe is narrower (cos^50; moments:
+    // McGuire et al. 2017, section 5.2), so their cells are half as wide.
     push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
     while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
     push.extra = cells.address();

@@ -356,6 +356,7 @@ std::string tableProblem(const Table& table, uint64_t fileBytes)
     uint32_t section = 0, chunk = 0;
     for (const Block& block : table.blocks)
     {
+        // Sections in order and without gaps: no byte of the file is left that no checksum covers.
         const std::string name = "block '" + blockName(block) + "'";
         if (block.section >= sectionCount || block.section < section) return name + " is not where it belongs";
         chunk = block.section == section ? chunk : 0;

@@ -48,8 +48,7 @@ Result<GpuImage> makeLightImage(Gpu& gpu, VkFormat format, uint32_t width, uint3
             transition(gpu, cmd, *image,
                        {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_CLEAR_BIT, 0,
                         VK_ACCESS_2_TRANSFER_WRITE_BIT});
-            // Passes write the pixels of their term alone. The others must be numbers all the same: the scan for NaN reads whole images,
-            // and so may a host.
+            // Passes write the pixels of their term alone; the others must be numbers all the same: the scan for NaN reads whole images.
             const VkClearColorValue nothing{};
             const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
             gpu.vk.CmdClearColorImage(cmd, image->handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);

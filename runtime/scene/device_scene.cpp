@@ -153,6 +153,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     made.materials = std::move(*materialBuffer);
 
     made.lightList = buildLightList(scene, space, desc.light);
+    // Room for one light at least: the array behind the header is bound even when it is empty.
     std::vector<std::byte> list(sizeof(gpu::LightsHeader) + std::max<size_t>(made.lightList.lights.size(), 1) * sizeof(gpu::GpuLight));
     std::memcpy(list.data(), &made.lightList.header, sizeof(gpu::LightsHeader));
     if (!made.lightList.lights.empty())

@@ -44,6 +44,7 @@ struct GpuMemory::Block
             if (start + wanted > end) continue;
             free.erase(free.begin() + std::ptrdiff_t(i));
             if (start + wanted < end) free.insert(free.begin() + std::ptrdiff_t(i), {start + wanted, end - start - wanted});
+            // What alignment skips stays free: a smaller piece may fit there.
             if (start > range.offset) free.insert(free.begin() + std::ptrdiff_t(i), {range.offset, start - range.offset});
             return start;
         }
@@ -54,6 +55,7 @@ struct GpuMemory::Block
     {
         auto next = std::lower_bound(free.begin(), free.end(), offset, [](const Range& r, VkDeviceSize o) { return r.offset < o; });
         next = free.insert(next, {offset, bytes});
+        // Joined with its neighbours, so that a block whose pieces are all back is one range and can be told to be empty.
         if (next + 1 != free.end() && next->offset + next->size == (next + 1)->offset)
         {
             next->size += (next + 1)->size;
@@ -162,6 +164,7 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
     if (type < 0)
         return Error{ErrorCode::missingFeature, std::string("The device has no memory type for ") + what + "; choose another device"};
     const bool mapped = use != MemoryUse::device;
+    // Memory types, buffers or images, mapped or not: blocks are kept apart by all three.
     if (needs.size < kLargeBytes)
     {
         for (Block& block : blocks)
