@@ -19,6 +19,7 @@ template <class Work> void parallelFor(size_t count, const Work& work)
     {
         for (size_t i = next++; i < count; i = next++) work(i);
     };
+    // Declared last, so joined before `next` and `run` go; joining also makes what the threads wrote visible to the caller.
     std::vector<std::jthread> pool;
     for (size_t t = 1; t < threads; ++t) pool.emplace_back(run);
     run();

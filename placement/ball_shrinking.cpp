@@ -63,6 +63,7 @@ std::array<int, 4> groupOf(const Surfel& surfel, vec3 low, float side)
     return {cell.x, cell.y, cell.z, 2 * axis + (surfel.normal[axis] > 0.0f)};
 }
 
+// Ordered, so that the order of the candidates does not hang on hashing.
 using Groups = std::map<std::array<int, 4>, std::vector<uint32_t>>; // samples
 
 Groups groupsOf(const std::vector<Surfel>& surfels, const std::vector<uint32_t>& members, vec3 low, float side)

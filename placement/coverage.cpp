@@ -72,6 +72,7 @@ Result<Coverage> measureCoverage(const Scene& scene, const Visibility& visibilit
     const float spacing = probeSpacing(space, probes.size());
     const std::vector<uint32_t> best = bestProbes(visibility, hit, probes, spacing);
     if (!report(progress, "coverage", 0.6)) return cancelled;
+    // By area as well: rays hit most what much of the space sees, and a niche hardly counts.
     const std::vector<Surfel> spread = areaSurfels(scene, visibility, space, settings.points, settings.seed ^ 0x61726561ull);
 
     Coverage coverage;

@@ -105,6 +105,7 @@ DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>
     DistanceField field;
     const glm::dvec3 extent(box.size());
     const double longest = std::max({extent.x, extent.y, extent.z});
+    // Cells are whole along each axis, so their number has no inverse: the side grows by 2 % until they are few enough.
     double voxel = longest / 1024.0;
     const auto cellsAt = [&extent](double side)
     { return std::ceil(extent.x / side) * std::ceil(extent.y / side) * std::ceil(extent.z / side); };
@@ -113,6 +114,7 @@ DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>
     field.size = glm::max(glm::ivec3(glm::ceil(extent / double(field.voxel))), glm::ivec3(1));
     field.origin = box.centre() - 0.5f * field.voxel * vec3(field.size);
 
+    // Triangles farther from the box than the exact band change no cell's distance.
     const float margin = (kExactBand + 1.0f) * field.voxel;
     std::vector<uint32_t> near;
     for (uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle)
@@ -131,6 +133,7 @@ DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>
     const auto band = openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, *openvdb::math::Transform::createLinearTransform(1.0),
                                                                        kExactBand, kExactBand, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
 
+    // OpenVDB gives exact distances in a narrow band alone, and no more is asked of it.
     // Far field: distance in cells to the nearest cell that a surface passes through or touches.
     constexpr float kTouching = 0.8660254f; // half the diagonal of a unit cube
     constexpr float kInfinity = std::numeric_limits<float>::infinity();

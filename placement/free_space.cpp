@@ -440,6 +440,7 @@ Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility
     if (!report(progress, "distance field", 0.0)) return cancelled;
     space.field = buildDistanceField(scene, visibility.presence(), box, voxels);
     if (!report(progress, "free space", 0.0)) return cancelled;
+    // The regions are as large as the field: they go, with their block, before a finer one is made.
     bool indoors = false;
     {
         const Regions regions = joinFreeCells(space.field);

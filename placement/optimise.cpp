@@ -167,10 +167,13 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
                 return Error{ErrorCode::cancelled, "The refinement of probes was cancelled."};
             Random random(settings.seed, round * positions.size() + k);
             views.without(k, others);
+            // A probe away from walls stays so; one that was put near a wall, before a gap, may stay near.
             const bool comfortable =
                 settings.comfort > 0.0f && legal.visibility.distance(positions[k], settings.comfort) >= settings.comfort;
             const float clearance = comfortable ? settings.comfort : settings.clearance;
+            // Gains over what the other probes see: the fitness of the whole set, but for a constant.
             const uint64_t present = gainOf(views.row(k), others.data(), targets.weights);
+            // The support cube of Wang et al. 2019, section 3.3. Corners that are not legal gain 0 and are never taken.
             tbb::parallel_for(size_t(0), supports.size(),
                               [&](size_t corner)
                               {
@@ -197,6 +200,7 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
                 accepted = random.uniform() < std::pow(float(proposal->gain) / float(present), kSharpness);
             if (!accepted) continue;
             positions[k] = proposal->position;
+            // Rated again without a floor: the proposal's row lacks what the others see better, and they may move.
             targets.rate(legal.visibility, positions[k], proposal->row);
             views.replace(k, proposal->row);
         }
@@ -223,6 +227,7 @@ Status relocatePositions(const LegalSpace& legal, const ViewTargets& targets, st
             size_t(0), proposals.size(),
             [&](size_t i)
             {
+                // A generator for each try: the result doesn't depend on the threads.
                 Random random(settings.seed, k * proposals.size() + i);
                 proposals[i].gain = 0;
                 for (int draw = 0; draw < 4; ++draw)

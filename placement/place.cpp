@@ -194,6 +194,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     if (const std::string fault = faultOfPins(legal, clearance); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     std::vector<Candidate> candidates = pinnedCandidates(settings.pins);
     const size_t pinned = candidates.size();
+    // Kept probes are among those asked for, added ones stand beside them.
     const uint32_t count = settings.count ? settings.count + uint32_t(numberOf(settings.pins, Pin::Kind::add)) : 0;
     // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
     const float comfort = std::max(clearance, kComfort * probeSpacing(space, count ? count : knobs::kGridCount));
@@ -214,6 +215,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                  scene.name, clearance, space.field.voxel)};
 
     const float spacing = probeSpacing(space, count ? count : knobs::kGridCount);
+    // The table of views has a byte for each candidate and surfel: where candidates are many, surfels must be fewer.
     const size_t budget = size_t(std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0)));
     std::vector<Surfel> surfels = mixedSurfels(scene, visibility, space, budget / 4, settings.seed);
     if (surfels.empty())
@@ -230,9 +232,11 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                           positionsOf(candidates, chosen), budget / 2, spacing, gaps);
     for (const Candidate& candidate : gapCandidates(legal, gaps, size_t(planned * kGapShare), clearance, settings.seed ^ 0x676170ull))
         candidates.push_back(candidate);
+    // Anew, not extended: the rows are of other surfels now.
     table = {};
     if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
 
+    // What all candidates together see bounds every choice among them; the search for a target below ends there.
     std::vector<uint32_t> all(candidates.size());
     for (uint32_t c = 0; c < all.size(); ++c) all[c] = c;
     const std::vector<uint8_t> bestOfAll = bestValues(table, all);
@@ -281,6 +285,8 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
         return stratifiedTargets(visibility, mixedSurfels(scene, visibility, space, kDraws * settings.refineSurfels, settings.seed ^ seed),
                                  positions, settings.refineSurfels / 2, probeSpacing(space, positions.size()), gaps);
     };
+    // The choice was among sampled candidates: a probe may do better at a place that none of them was. First anywhere (relocation), then
+    // near by (Wang et al. 2019, section 3.3).
     for (uint32_t round = 0; round < settings.relocateRounds; ++round)
     {
         const std::vector<vec3> before = positions;
@@ -305,6 +311,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
 
     std::vector<Candidate> final;
     for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], origins[k]});
+    // By the positions as they are now; what the choice knew of them has been moved away from.
     return explained(visibility, refining, final, report);
 }
 

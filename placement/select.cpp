@@ -81,6 +81,7 @@ std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float
         Bound top = queue.top();
         queue.pop();
         const uint64_t gain = gainOf(table.row(top.candidate), best.data(), table.weights);
+        // Its gain has fallen below another's bound since it was reckoned: it waits with what it is now.
         if (!queue.empty() && Bound{gain, top.candidate} < queue.top())
         {
             queue.push({gain, top.candidate});
@@ -92,6 +93,7 @@ std::vector<uint32_t> chooseGreedily(const ViewTable& table, size_t count, float
         raise(best, table.row(top.candidate));
         chosen.push_back(top.candidate);
     }
+    // The barren ones at the end only see better what is seen: a coverage doesn't need them.
     if (!count) chosen.resize(chosen.size() - std::min(barren, chosen.size()));
     return chosen;
 }

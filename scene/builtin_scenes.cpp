@@ -98,6 +98,7 @@ Scene makeTemple()
     cella.fill({-4.2f, top, -7.8f}, {4.2f, top + 5.6f, 7.0f}, stone);
     cella.fill({-4.0f, top, -7.6f}, {4.0f, top + 5.6f, 6.8f}, plaster); // paint of 0.2 m inside a stone skin of the same
     cella.carve({-3.8f, top - 1.0f, -7.4f}, {3.8f, top + 5.3f, 6.6f});
+    // The door, the cella's only opening.
     cella.carve({-1.2f, top - 1.0f, 6.0f}, {1.2f, top + 3.6f, 8.0f});
     cella.addTo(mesh);
 

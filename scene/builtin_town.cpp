@@ -127,6 +127,7 @@ void addHouse(MeshBuilder& mesh, const TownMaterials& m, mat4 frame, uint64_t se
 {
     Variation vary(seed);
     mesh.place = frame;
+    // All draws come from one sequence: a draw added or moved changes every one after it.
     const uint32_t facade = m.walls[vary.below(6)], cloth = m.cloth[vary.below(4)], wood = vary.below(2) ? m.oak : m.birch;
     const uint32_t paintA = m.paints[vary.below(4)], paintB = m.paints[vary.below(4)];
     addWalls(mesh, m, facade, paintA, paintB, vary.below(2) == 0);

@@ -100,6 +100,7 @@ Result<Container> splitGlb(const Bytes& bytes, const std::string& name)
         if (at == 12 && type != kJson) return bad(name + " doesn't begin with a JSON chunk; export it again.");
         if (at == 12 && size > GltfLimits::jsonBytes)
             return bad(name + " has " + std::to_string(size) + " bytes of JSON; the limit is 256 MiB.");
+        // All chunks but the JSON and the first binary one are skipped, as glTF 2.0 section 4.4.3 asks of unknown types.
         if (at == 12)
             container.json.assign(begin, begin + int64_t(size));
         else if (type == kBinary && !container.binary)
@@ -289,6 +290,7 @@ Result<Bytes> SceneFolder::read(std::string_view uri, const std::string& what) c
     if (decoded->front() == '/' || decoded->find('\\') != std::string::npos || decoded->find(':') != std::string::npos)
         return bad(shown + "an absolute path, a backslash or another scheme" + remedy);
     const fs::path relative(*decoded);
+    // As written first, then as resolved: '..' is refused though it might lead back, a link by where it ends.
     for (const fs::path& part : relative)
         if (part == "..") return bad(shown + "which leads out of the folder" + remedy);
     std::error_code problem;
@@ -319,6 +321,7 @@ Status checkJsonDepth(std::string_view json)
             text = true;
         else if (c == '{' || c == '[')
         {
+            // Counted by hand: the parsers recurse, and would overflow the stack before they could refuse.
             if (++depth > GltfLimits::jsonDepth)
                 return bad("The JSON is nested deeper than " + std::to_string(GltfLimits::jsonDepth) + " levels at byte " +
                            std::to_string(i) + "; remove the extras or export the file again.");
@@ -356,6 +359,7 @@ Result<GuardedGltf> openGltf(const fs::path& file)
     {
         Json gltf = Json::parse(container.json);
         container.json = std::string();
+        // What the file claims to be is checked before any byte that it names is read.
         if (Status status = checkShape(gltf, name); !status) return status.error();
         if (Status status = checkRequired(gltf, name); !status) return status.error();
         if (Status status = checkCompressedMeshes(gltf, name); !status) return status.error();
@@ -364,6 +368,7 @@ Result<GuardedGltf> openGltf(const fs::path& file)
         for (const Bytes& buffer : out.buffers) sizes.push_back(buffer.size());
         if (Status status = checkLayout(gltf, sizes); !status) return Error{status.error().code, name + ": " + status.error().message};
         if (Status status = listImages(gltf, out); !status) return Error{status.error().code, name + ": " + status.error().message};
+        // The parser sees JSON that names no data: what it could be led to open has been read, and checked, here.
         gltf.erase("buffers");
         gltf.erase("images");
         out.json = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -72,6 +72,7 @@ public:
             if (*buffer >= bufferBytes.size())
                 return bad(owner + " uses buffer " + std::to_string(*buffer) + " of " + std::to_string(bufferBytes.size()) +
                            "; export the file again.");
+            // glTF 2.0's own limits; a stride of 0 is 'not given', and elements are then tightly packed.
             if (*stride > 252 || *stride % 4 != 0)
                 return bad(owner + " has byteStride " + std::to_string(*stride) + "; it must be a multiple of 4 up to 252.");
             // A compression fallback without data passes here: only an accessor that reads it is a fault.

@@ -61,6 +61,7 @@ struct PngReader
     static void fail(png_structp png, png_const_charp message)
     {
         static_cast<PngReader*>(png_get_error_ptr(png))->fault = "can't be decoded as PNG (" + std::string(message) + "); export it again.";
+        // The fault is kept first, outside of what the jump leaves: it must not return to libpng.
         png_longjmp(png, 1);
     }
     static void ignoreWarning(png_structp, png_const_charp) {}
@@ -70,6 +71,7 @@ void readPng(png_structp png, png_infop info, PngReader& reader, Image& image)
 {
     if (setjmp(png_jmpbuf(png))) return; // reader.fault says why
     png_set_read_fn(png, &reader, PngReader::read);
+    // Four times as wide as ours, so that a merely large image still reaches our check.
     png_set_user_limits(png, kMaxImageSide * 4, kMaxImageSide * 4); // ours is checked below, with a better sentence
     png_read_info(png, info);
     image.width = png_get_image_width(png, info);
@@ -82,6 +84,7 @@ void readPng(png_structp png, png_infop info, PngReader& reader, Image& image)
     png_set_add_alpha(png, 0xff, PNG_FILLER_AFTER);
     png_set_interlace_handling(png);
     png_read_update_info(png, info);
+    // Asked of libpng, not assumed: it writes whole rows into memory that is sized here.
     if (png_get_rowbytes(png, info) != size_t(image.width) * 4) png_error(png, "unexpected pixel layout");
     image.rgba.resize(size_t(image.width) * image.height * 4);
     reader.rows.resize(image.height);

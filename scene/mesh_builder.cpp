@@ -204,6 +204,8 @@ void BlockSolid::addTo(MeshBuilder& mesh) const
         for (int y = 0; y < cells.y; ++y)
             for (int x = 0; x < cells.x; ++x)
             {
+                // A cell lies wholly in or out of each step, since the planes of all steps are cuts: its middle decides. Later steps win,
+                // so that a carve undoes what was filled before it.
                 const vec3 middle = 0.5f * (corner(x, y, z) + corner(x + 1, y + 1, z + 1));
                 for (const Step& step : steps)
                     if (glm::all(glm::lessThan(step.low, middle)) && glm::all(glm::lessThan(middle, step.high)))
@@ -214,6 +216,7 @@ void BlockSolid::addTo(MeshBuilder& mesh) const
         for (int y = 0; y < cells.y; ++y)
             for (int x = 0; x < cells.x; ++x)
             {
+                // Faces between two solid cells are left out: nothing sees them.
                 const int64_t solid = at(x, y, z);
                 if (solid == kEmpty) continue;
                 const auto m = uint32_t(solid);

@@ -103,6 +103,7 @@ void measureTriangles(const Scene& scene, SceneReport& report)
     for (size_t i = 0; i < scene.triangles.size(); ++i)
     {
         const uvec3 t = scene.triangles[i];
+        // In double: the cross product of a sliver's edges loses its digits in float.
         const glm::dvec3 a(scene.positions[t.x]), b(scene.positions[t.y]), c(scene.positions[t.z]);
         const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
         report.area += area;
@@ -193,6 +194,7 @@ SceneReport checkScene(const Scene& scene, float raysBelow)
         ++(light.type == LightType::directional ? report.directionalLights
            : light.type == LightType::point     ? report.pointLights
                                                 : report.spotLights);
+    // What follows indexes materials and vertices without asking, so an invalid scene gets no further.
     if (std::string fault = validate(scene); !fault.empty())
     {
         report.findings.push_back({"invalid", Severity::error, std::move(fault)});

@@ -226,6 +226,7 @@ Status Importer::collect()
     }
     // A stack of its own: 1024 levels of calls would not fit the small stacks that threads may have.
     std::vector<Visit> pending;
+    // In reverse, here and in visit(), so that meshes, cameras and lights come in the file's order.
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), 1});
     while (!pending.empty())
     {
@@ -262,6 +263,7 @@ Status Importer::visit(const Visit& next, std::vector<Visit>& pending)
 
 Status Importer::addInstances(const tg::Node& node, int index, const dmat4& world)
 {
+    // Before checkBudget(), which counts triangles per instance: the list of instances must fit memory, too.
     constexpr size_t kMaxInstances = 10'000'000;
     const std::string owner = "Node " + std::to_string(index);
     if (!has(model.meshes, node.mesh)) return bad(owner + " uses " + outside("mesh", node.mesh, model.meshes));
@@ -298,6 +300,7 @@ Status Importer::addInstances(const tg::Node& node, int index, const dmat4& worl
             local *= glm::mat4_cast(glm::normalize(q));
         }
         if (parts[2]) local = glm::scale(local, parts[2]->vec3At(i));
+        // The extension's transforms apply within the node's own.
         instances.push_back({node.mesh, world * local});
     }
     return success();
@@ -377,6 +380,7 @@ Status Importer::checkBudget()
         for (const tg::Primitive& primitive : model.meshes[size_t(instance.mesh)].primitives)
         {
             const auto position = primitive.attributes.find("POSITION");
+            // Corners, of which an indexed primitive has as many as indices.
             const int counted = primitive.indices != -1                  ? primitive.indices
                                 : position != primitive.attributes.end() ? position->second
                                                                          : -1;
@@ -422,6 +426,7 @@ Result<AccessorView> Importer::view(int index, int components, const std::string
     for (size_t i = 0; i < size_t(accessor.sparse.count); ++i)
     {
         const auto element = uint32_t(where.component(i, 0));
+        // Ascending, as glTF 2.0 asks: component() finds them by binary search.
         if (element >= out.count || (!out.replaced.empty() && element <= out.replaced.back().first))
             return bad("Accessor " + std::to_string(index) + " has sparse index " + std::to_string(element) + " of " +
                        std::to_string(out.count) + " out of range or order; export the file again.");
@@ -538,6 +543,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
         surface.baseColorTexture.image >= 0 || surface.metallicRoughnessTexture.image >= 0 || surface.emissionTexture.image >= 0;
     if (textured && !uvs) note("A textured mesh has no texture coordinates; its textures are read at (0,0).");
 
+    // Primitives may share one accessor of all vertices: only those that the triangles of this one name are copied.
     std::vector<uint32_t> used(*corners);
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -583,6 +589,7 @@ Result<uint32_t> Importer::materialOf(int index)
     m.roughness = clamped(pbr.roughnessFactor);
     m.doubleSided = source.doubleSided;
     if (source.alphaMode == "MASK") m.alphaCutoff = float(std::max(source.alphaCutoff, 0.0));
+    // Nothing here blends: what is more opaque than not is solid, the rest is not there.
     if (source.alphaMode == "BLEND") m.alphaCutoff = 0.5f;
     double strength = 1.0;
     if (const auto it = source.extensions.find("KHR_materials_emissive_strength"); it != source.extensions.end())
@@ -711,7 +718,9 @@ Status Importer::place(const Piece& piece, const dmat4& world)
     };
     for (uvec3 t : piece.triangles)
     {
+        // A negative determinant turns the winding, glTF 2.0 section 3.7.4.
         if (mirrored) std::swap(t.y, t.z);
+        // In double, but of the positions as they are kept: a triangle that rounding has flattened has no area either.
         const dvec3 a(positions[t.x]), cross = glm::cross(dvec3(positions[t.y]) - a, dvec3(positions[t.z]) - a);
         const double area = glm::length(cross);
         if (!(area > 0.0))

@@ -52,6 +52,7 @@ std::vector<Presence> trianglePresence(const Scene& scene)
     return presence;
 }
 
+// Solid and masked triangles are geometries of their own, so that Embree asks back about masked ones only.
 struct TriangleRays::State
 {
     const Scene* scene = nullptr;
@@ -62,6 +63,7 @@ struct TriangleRays::State
 
     ~State()
     {
+        // Embree's device goes last: the scene was made with it.
         if (embree) rtcReleaseScene(embree);
         if (device) rtcReleaseDevice(device);
     }
@@ -203,6 +205,7 @@ void TriangleRays::unoccluded(vec3 from, std::span<const vec3> to, std::span<uin
             rays.tnear[lanes] = 0.0f, rays.tfar[lanes] = 1.0f, rays.mask[lanes] = ~0u;
             target[lanes++] = next;
         }
+        // All that was left had been ruled out before.
         if (lanes == 0) break;
         for (int lane = 0; lane < 8; ++lane) valid[lane] = lane < lanes ? -1 : 0;
         rtcOccluded8(valid, state->embree, &context, &rays);
@@ -236,6 +239,7 @@ void TriangleRays::distances(std::span<const vec3> origins, std::span<const vec3
                         for (size_t lane = 0; lane < 8; ++lane)
                         {
                             valid[lane] = first + lane < end ? -1 : 0;
+                            // Lanes past the end are not valid, but must not be read from beyond the arrays.
                             const size_t i = std::min(first + lane, end - 1);
                             eight.ray.org_x[lane] = origins[i].x, eight.ray.org_y[lane] = origins[i].y,
                             eight.ray.org_z[lane] = origins[i].z;

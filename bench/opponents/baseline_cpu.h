@@ -10,6 +10,7 @@ namespace sconce::twin
 /// Refers to the field: keep that alive. Safe from many threads.
 template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<Real>
 {
+    // The shader text names all of these unqualified, and unqualified names are not looked up in a template's dependent base.
     using Base = LightFieldTwin<Real>;
     using Base::Base;
     using real = Real;

@@ -66,6 +66,7 @@ Result<RaySet> loadRays(const std::filesystem::path& file)
         return damaged(file, "holds no rays");
     if (header.version != kVersion) return damaged(file, "has another version");
     std::error_code problem;
+    // The length before the records: a made-up number of rays must not be allocated.
     const uintmax_t bytes = std::filesystem::file_size(file, problem);
     if (problem || bytes != sizeof(Header) + uintmax_t(header.rays) * sizeof(Record)) return damaged(file, "is not as long as it says");
     if (!(header.diagonal > 0.0f && std::isfinite(header.diagonal))) return damaged(file, "has no diagonal");
@@ -76,6 +77,7 @@ Result<RaySet> loadRays(const std::filesystem::path& file)
     set.diagonal = header.diagonal;
     for (const Record& record : records)
     {
+        // Every number at once: a single one that is none would go unnoticed into the scores of all tracers.
         float numbers[sizeof(Record) / sizeof(float)];
         std::memcpy(numbers, &record, sizeof record);
         for (const float number : numbers)

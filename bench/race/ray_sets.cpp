@@ -113,6 +113,7 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
     tbb::parallel_for(uint32_t(0), settings.count,
                       [&](uint32_t i)
                       {
+                          // A hint to stop early, no more: it orders nothing, and the answer is read after all threads are done.
                           if (blind.load(std::memory_order_relaxed)) return;
                           Random random(settings.seed, i, 0);
                           for (int attempt = 0; attempt < kTries; ++attempt)

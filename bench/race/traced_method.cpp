@@ -155,6 +155,7 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
     if (auto status = setKnobs(how, spelled->knobs); !status) return status.error();
     auto data = loadField(spelled->file);
     if (!data) return data.error();
+    // Without a name, the tracer that the field was made for.
     if (!spelled->tracer.empty())
         how.opponent = baselineNamed(spelled->tracer);
     else if (data->info.chart == gpu::kChartOctahedral)
@@ -191,6 +192,7 @@ double TracedMethod::radianceMebibytes() const
 
 std::vector<gpu::Ray> TracedMethod::raysOf(const RaySet& set) const
 {
+    // Opponents' rays start farther off their surface; ours need no more than the set's own distance.
     const float offset = how.opponent ? baselineOffset(*how.opponent) : 0.0f;
     std::vector<gpu::Ray> rays(set.size());
     for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i] + offset * set.normals[i], set.directions[i], set.normals[i]};
@@ -225,6 +227,7 @@ Status TracedMethod::prepare(std::span<const gpu::Ray> rays, std::span<const uin
 {
     assert(rays.size() == order.size() && rays.size() <= (size_t(1) << 18));
     timedRays = uint32_t(rays.size());
+    // Both orders stand on the device before any time is taken: uploads are no part of a run.
     std::vector<gpu::Ray> shuffled(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) shuffled[i] = rays[order[i]];
     auto first = gpu.makeBufferWith<gpu::Ray>(rays, 0, "rays");

@@ -73,6 +73,7 @@ RaySet timedRays(const RaySet& set, size_t count)
 Status timeAll(std::vector<Row>& rows, std::span<const std::unique_ptr<TracedMethod>> methods, const RaySet& set,
                const RaceSettings& settings, const std::optional<OutsideRunner>& outside)
 {
+    // All tracers and the outside runner get the same rays in the same two orders.
     const RaySet rays = timedRays(set, std::min<size_t>(set.size(), settings.timed));
     const std::vector<uint32_t> order = shuffledOrder(rays.size(), settings.seed);
     RaySet shuffled;

@@ -116,6 +116,7 @@ Result<ImageSet> readExr(const std::filesystem::path& file)
         images.width = static_cast<uint32_t>(window.max.x - window.min.x + 1);
         images.height = static_cast<uint32_t>(window.max.y - window.min.y + 1);
 
+        // Channels come one by one; R, G and B of one prefix are a layer of three.
         std::map<std::string, std::vector<std::string>> groups; // layer prefix -> its channels' last names
         for (auto c = input.header().channels().begin(); c != input.header().channels().end(); ++c)
         {

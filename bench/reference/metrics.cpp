@@ -102,6 +102,7 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
     result.height = a.height;
     result.nonFinitePixels = nonFinitePixels(**layerA);
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    // A mean over a pixel that is not a number is none either: said as NaN, beside how many such pixels there are.
     const bool whole = result.nonFinitePixels == 0;
     const float exposure = settings.exposure.value_or(autoExposure(right));
     if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
@@ -109,6 +110,7 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
     if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, exposure) : nan;
     if (settings.flip && whole)
     {
+        // HDR-FLIP sweeps exposures of its own; where one is asked for, the picture is compared as it is shown.
         result.errorMap = settings.exposure
                               ? flipLdr(toneMap(left, exposure), toneMap(right, exposure), a.width, a.height, settings.pixelsPerDegree)
                               : flipHdr(left, right, a.width, a.height, settings.pixelsPerDegree);

@@ -165,12 +165,15 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
     for (const Light& source : scene.lights) light.direct += punctual(point, view, source);
 
     vec3 diffuse(1.0f), glossy(1.0f); // the path's weight by the lobe that passed it on at the first hit
+    // The picture's own point, then one that a probe sees by direct light alone, then one more for every bounce of the bake: the reference
+    // has the light that the field has.
     for (uint32_t vertex = 1; vertex <= bounces + 2; ++vertex)
     {
         const BrdfValue emitted = emitterLight(point, view, random);
         const vec3 both = emitted.diffuse + emitted.specular;
         light.diffuse += diffuse * (vertex == 1 ? emitted.diffuse : both);
         light.glossy += glossy * (vertex == 1 ? emitted.specular : both);
+        // One light, drawn at random, stands for all; at the first hit, which shows most, all were summed above.
         if (vertex > 1 && !scene.lights.empty())
         {
             const auto count = static_cast<uint32_t>(scene.lights.size());
@@ -183,6 +186,7 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
         if (!next) break;
         diffuse *= vertex == 1 ? next->diffuse : next->diffuse + next->specular;
         glossy *= vertex == 1 ? next->specular : next->diffuse + next->specular;
+        // Russian roulette by the larger weight of the two lobes; dividing by the chance to go on keeps the mean.
         if (vertex >= kFirstRoulette)
         {
             const float keep = std::min(1.0f, std::max(largest(diffuse), largest(glossy)));
@@ -204,6 +208,8 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
         point = shade(*hit, view);
         if (any(point.emission))
         {
+            // The same light as emitterLight() draws, found by chance: the balance heuristic shares it between the two. A mirror's ray has
+            // no density (pdf 0), no draw of an emitter could have found it, and it counts in full.
             const float cosine = std::abs(glm::dot(hit->geometricNormal, view));
             const float areaPdf = emitters.areaPdf(hit->triangle);
             float weight = 1.0f;

@@ -60,6 +60,8 @@ public:
     Pace(const Progress& asked, double allPaths, tbb::task_group_context& group) : progress(asked), paths(allPaths), context(group) {}
     bool goOn(uint32_t morePaths)
     {
+        // Relaxed, here and below: a count and a flag of which nothing else hangs. The pictures are read after parallel_for, which orders
+        // what the threads wrote.
         const uint64_t done = traced.fetch_add(morePaths, std::memory_order_relaxed) + morePaths;
         // One thread at a time asks; the others need not wait for it.
         if (const std::unique_lock lock(asking, std::try_to_lock);
@@ -139,16 +141,19 @@ struct Frame
         const size_t pixel = size_t(y) * settings.width + x;
         const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
         if (settings.guides) guides(pixel, centre);
+        // Every other path in each half: what the two halves differ by tells the error of the whole.
         glm::dvec3 sums[3]{}, halves[3][2]{}; // of beauty, diffuse, glossy
         for (uint32_t i = 0; i < settings.samples; ++i)
         {
             if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
+            // By pixel and path, not by thread: the picture is the same for any number of threads.
             Random random(settings.seed, pixel, i);
             const vec2 jitter = random.uniform2();
             const vec3 ray = settings.pixelCentre ? centre
                                                   : pinhole.direction(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y,
                                                                       settings.width, settings.height);
             const PathLight path = tracer.trace(pinhole.eye, ray, random);
+            // One such path would spoil its pixel whatever the other paths say; it counts as black, and is reported.
             if (!allFinite(path))
             {
                 nonFinite.fetch_add(1, std::memory_order_relaxed);

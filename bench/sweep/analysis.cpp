@@ -334,6 +334,7 @@ std::vector<std::string> paretoFront(std::span<const Json* const> points, std::s
     for (const Json* point : points)
         if (const auto error = figureOf(*point, errorKey), cost = figureOf(*point, costKey); error && cost)
             candidates.push_back({*cost, *error, point});
+    // From the cheapest on: a point is on the front when its error is less than that of all cheaper ones.
     std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b)
                              { return std::pair(a.cost, a.error) < std::pair(b.cost, b.error); });
     std::vector<std::string> front;
@@ -369,6 +370,8 @@ Json analyseScene(const std::vector<Json>& points)
     for (const std::string_view error : kErrors)
         for (const std::string_view cost : kCosts)
             analysis["fronts"][std::string(error) + "|" + std::string(cost)] = paretoFront(all, error, cost);
+    // Tracers are compared by what placement, bake and trace bring, the path tracer by whole frames: filters are no merit of a tracer, but
+    // are one of the frame.
     Tables tables(oursTraced, base), pathTables(ours, base);
     for (auto& [opponent, theirs] : opponents)
     {
@@ -416,6 +419,7 @@ std::vector<std::string> answersOf(const Json& results)
                 if (row["what"] != question.what || row["error_key"] != question.key || method == kPathTracer ||
                     (question.cost && row["cost_key"] != question.cost) || !row["theirs"].get<std::string>().ends_with("/default"))
                     continue;
+                // A scene where nothing of ours is good enough counts as such, however well others went.
                 if (row["ours"].is_null())
                 {
                     if (!unreached) worst = &row;

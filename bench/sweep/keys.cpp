@@ -26,6 +26,7 @@ public:
     Hash() { XXH3_64bits_reset(state.get()); }
     template <class T> void add(const T& value)
     {
+        // Padding has no fixed value: what has some would hash differently from run to run.
         static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
         XXH3_64bits_update(state.get(), &value, sizeof value);
     }
@@ -36,6 +37,7 @@ public:
     void add(std::span<const char> bytes) { XXH3_64bits_update(state.get(), bytes.data(), bytes.size()); }
     template <class T> void addAll(const std::vector<T>& values) // without padding
     {
+        // The length, too, so that two arrays that follow each other can't be cut at another place for the same key.
         add(values.size());
         XXH3_64bits_update(state.get(), values.data(), values.size() * sizeof(T));
     }

@@ -117,6 +117,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
     for (const QualityLevel& level : qualityLevels()) planner.addLevel(ours, level);
     for (size_t i = 0; i < theirs.size(); ++i)
     {
+        // Opponents get what any method has: other numbers of probes and texels, more rays, sparser tracing.
         planner.addProbeCounts(theirs[i], {0.5, 2.0});
         for (const double factor : opponents()[i].curve)
             planner.addVaried(theirs[i], *findKnob("resolution"), std::to_string(uint32_t(theirs[i].resolution * factor)));

@@ -74,6 +74,7 @@ Json sectionAt(const Scene& scene, float height)
         for (int i = 0; i < 3 && found < 2; ++i)
         {
             const vec3 a = scene.positions[triangle[i]], b = scene.positions[triangle[(i + 1) % 3]];
+            // Half open, so that a corner exactly at the height cuts two of the edges or none, and never one.
             if ((a.y < height) == (b.y < height)) continue;
             const float s = (height - a.y) / (b.y - a.y);
             ends[found++] = vec2(glm::mix(a.x, b.x, s), glm::mix(a.z, b.z, s));
@@ -81,6 +82,7 @@ Json sectionAt(const Scene& scene, float height)
         if (found == 2) segments.emplace_back(ends[0], ends[1]);
     }
     const auto length = [](const glm::vec4& s) { return glm::distance(vec2(s), vec2(s.z, s.w)); };
+    // The longest stay: a page must be able to draw the plan, and walls are what it is looked at for.
     if (segments.size() > kMostSegments)
     {
         std::ranges::nth_element(segments, segments.begin() + kMostSegments, std::greater<>(), length);

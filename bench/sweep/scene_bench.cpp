@@ -85,6 +85,7 @@ Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string dev
         made->camera.eye = placed.front().position;
         const vec3 target = placed.size() > 1 ? placed[1].position : made->desc.scene.bounds().centre();
         made->camera.forward = glm::normalize(target - made->camera.eye);
+        // Looking straight up or down, the world's up gives the picture no direction.
         const vec3 world = std::abs(made->camera.forward.y) > 0.999f ? vec3(0.0f, 0.0f, -1.0f) : vec3(0.0f, 1.0f, 0.0f);
         made->camera.up = glm::normalize(world - glm::dot(world, made->camera.forward) * made->camera.forward);
     }
@@ -191,6 +192,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
         if (effect.called) field->effects.push_back(effect.name);
     const Json baked = {{"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.bounceSeconds},
                         {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
+    // The field before its report: both must be there to be used again, so that a run stopped in between bakes anew.
     if (auto status = saveField(*field, file); !status) return status.error();
     if (auto status = writeText(cached("fields", key, ".json"), baked.dump()); !status) return status.error();
     cost.update(baked);
@@ -206,6 +208,8 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
     settings.samples = desc.settings.referencePaths;
     settings.bounces = desc.settings.referenceBounces;
     settings.seed = desc.settings.seed;
+    // Compared pixel by pixel with frames that have one sample a pixel, at its centre: a filtered reference would show every edge as an
+    // error.
     settings.pixelCentre = true; // as the rasteriser's
     settings.roughness = roughness;
     settings.camera = camera;
@@ -281,6 +285,7 @@ Status SceneBench::prepare()
 /// The scene as frames of a kind need it; made once.
 Result<const DeviceScene*> SceneBench::sceneOf(const IndirectEffects& effects, const Progress& progress)
 {
+    // Frames differ in their scene by area lights alone: with shadow maps, or without where rays through the field shadow them.
     std::optional<DeviceScene>& scene = deviceScenes[effects.fieldShadows ? 1 : 0];
     if (!scene)
     {
@@ -324,6 +329,7 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
     if (const std::optional<Baseline> opponent = settings.opponent())
     {
         frame.glossyShader = traceGlossyPass(*opponent);
+        // The frame's rays start where the race's do, for every tracer.
         frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
     }
     auto scene = sceneOf(frame.effects, progress);
@@ -385,6 +391,7 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     auto score = live.tracer->score(*rays);
     if (!score) return score.error();
     json["rays"] = raysJson(*score);
+    // A filter over time is judged when its history has filled, not by its first frame.
     Result<RenderedFrame> frame = live.renderer->render(camera);
     const uint32_t frames = point.settings.frame.effects.temporal ? kTemporalFrames : 1;
     for (uint32_t i = 1; i < frames && frame; ++i) frame = live.renderer->render(camera, i);
@@ -441,6 +448,7 @@ Result<SceneBench::Passes> SceneBench::timeFrame(Live& live, uint32_t turn)
     if (live.plan->settings.pathTraced())
     {
         ReferenceSettings paths = pathSettings(*live.plan);
+        // Other paths each turn, as the tracers' frames have other rays.
         paths.seed += turn;
         auto picture = renderReference(*truth, paths);
         if (!picture) return picture.error();

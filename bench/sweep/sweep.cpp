@@ -134,6 +134,8 @@ private:
     Result<size_t> runGroup(std::vector<size_t> group)
     {
         std::vector<std::pair<size_t, SceneBench::Live>> lives;
+        // The plan's first point is timed in every group, also where it has been measured: machines and their load differ from group to
+        // group, and scaledPoints() takes the groups' times to one scale by it.
         const bool yardstickApart = group.front() != 0 && std::ranges::any_of(group, [&](size_t i) { return lacksTimes(i); });
         if (yardstickApart)
         {
@@ -144,6 +146,7 @@ private:
         for (size_t k = 0; k < group.size(); ++k)
         {
             const size_t i = group[k];
+            // The other half of the weight is that of timing the group.
             const double weight = 0.5 * weightOf(plan[i], bench.settings());
             auto live = bench.enliven(plan[i], within(weight));
             Result<Json> measured = live ? (records[i] ? Result<Json>(*records[i]) : bench.measure(*live, within(0.0))) : live.error();

@@ -130,6 +130,7 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     const bool octahedral = info.chart == gpu::kChartOctahedral;
     const uint64_t distance = info.wordsPerProbe, cube = octahedral ? distanceWordsPerProbe(gpu::kChartCube, info.faceSize / 2) : 0;
     const uint64_t light = radianceWordsPerProbe(info.chart, info.faceSize); // radiance, surfaces, direct light, emission
+    // The octree is built from a copy of all maps on the device, which for a software device is main memory again.
     const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 ? 3 : 2) * light + (emitters ? light : 0);
     const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
     if (needed <= allowed) return success();
@@ -206,6 +207,7 @@ Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
 Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
 {
     // The whole field's irradiance as it was before this bounce, so that the order of the probes doesn't matter.
+    // Without radiance: a bounce reads irradiance and what weighs it, and the device has only that to hold.
     FieldData lit;
     lit.info = field.info;
     lit.probes = field.probes;
@@ -263,6 +265,8 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     bake.field.effects = settings.effects;
     bake.field.probes.resize(probes.size());
     // A grid is looked up by its formula: its probes stay.
+    // Others stand two near planes off: what is nearer than that plane isn't drawn, and its corners are 1.73 times as far away as its
+    // middle.
     const ClearedProbes cleared = clearedOfSurfaces(scene, probes, settings.grid ? 0.0f : 2.0f * kProbeNear * info.diagonal * info.scale);
     spent.moved = cleared.moved;
     spent.tight = cleared.tight;
@@ -296,8 +300,10 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         }
         if (auto status = bake.directLight(**baker); !status) return status.error();
         spent.probeSeconds = watch.lap();
+        // The bounces find their probes by the octree, so it comes before them.
         if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
         spent.octreeSeconds = watch.lap();
+        // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
         if (settings.bounces > 0) bake.direct = bake.field.radiance;
         double energy = meanRadiance(bake.field);
         spent.energy.push_back(energy);
@@ -311,6 +317,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
             if (spent.energy.back() < double(settings.converged) * with) break;
         }
         spent.bounceSeconds = watch.lap();
+        // Made from the light of the last bounce; only then may the radiance go that they are made from.
         makePatches(bake.field, bake.surfaces, bake.emitted);
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};

@@ -31,6 +31,9 @@ constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
 void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 {
+    // Read after write: a probe's passes read each other's results, and copyOut() takes the last. They also overwrite what earlier ones
+    // read (the coarse cells are made twice), which the same barrier orders. All memory rather than single buffers: nothing else runs
+    // beside the bake.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
@@ -54,6 +57,7 @@ Status ProbeBaker::createBuffers()
     const uint32_t n = info.faceSize, faceTexels = 6 * n * n;
     ImageDesc desc;
     desc.width = n;
+    // The six faces below one another: one image, one render pass, one pair of transitions.
     desc.height = 6 * n;
     desc.format = kSurfaceFormat;
     desc.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -77,6 +81,7 @@ Status ProbeBaker::createBuffers()
         uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWordsPerProbe + (octahedral ? faceTexels : 0);
     std::vector<Need> needs = {{words, info.wordsPerProbe, MemoryUse::device, "A probe's distance words"},
                                {light, 4ull * radianceWords, MemoryUse::device, "A probe's radiance"},
+                               // Six faces of 32 x 32 cells, four words each: more than the octahedral map's 64 x 64 (recordGather).
                                {cells, 4ull * 6 * 32 * 32, MemoryUse::device, "A probe's coarse cells"},
                                {irradiance, kIrradianceWordsPerProbe, MemoryUse::device, "A probe's irradiance"},
                                {transfer, transferWords, MemoryUse::readback, "The bake's transfer buffer"}};
@@ -172,10 +177,13 @@ void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::sp
 void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
 {
     const uint32_t n = info.faceSize;
+    // The faces of the probe before are dropped (undefined), and the passes that read them are done, since submit() waited: nothing to wait
+    // for.
     transition(gpu, cmd, surfaceImage,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
     const VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    // Depth likewise. Both stages of tests: which of them reads and writes depth is the driver's choice.
     transition(gpu, cmd, depthImage,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE, tests, 0,
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
@@ -216,10 +224,12 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
         }
     }
     gpu.vk.CmdEndRendering(cmd);
+    // Read after write: compute passes alone sample the faces, to make the maps.
     transition(gpu, cmd, surfaceImage,
                {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    // The same for depth, whichever tests wrote it.
     transition(gpu, cmd, depthImage,
                {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, tests,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -231,6 +241,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 {
     const uint32_t n = info.faceSize;
     gpu::BakePush push = pushFor(centre);
+    // The octahedral map is resampled from cube faces: the surface pass writes those to buffers of their own first.
     if (octahedral)
     {
         push.words = faceWords.address();
@@ -256,6 +267,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
     }
     scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
     scanBuffer(gpu, cmd, "bake surfaces", faceLight, {.kind = gpu::kScanRadiance, .count = VkDeviceSize(6) * n * n});
+    // From here on the targets are the field's again, and the faces are what is read.
     push = pushFor(centre);
     push.extra = faceLight.address();
     const VkDescriptorSet imagesOnly[] = {images.handle()};
@@ -268,6 +280,8 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
 void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
 {
     gpu::BakePush push = pushFor(vec3(0.0f));
+    // A direction's sum runs over all cells, so texels are joined into coarse ones first. The moments' lobe is narrower (cos^50; moments:
+    // McGuire et al. 2017, section 5.2), so their cells are half as wide.
     push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
     while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
     push.extra = cells.address();
@@ -305,6 +319,8 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
             copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
             if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
+            // The fence that submit() waits for says that the copies are done, not that the host sees them: that takes a barrier to the
+            // host's stage.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });
@@ -343,6 +359,8 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
                                             {wordBytes + 2 * radianceBytes, 2 * radianceBytes, radianceBytes}};
             gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), words.handle(), 1, &toWords);
             gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), emitters ? 3 : 2, toLight);
+            // Read after write: the passes read what is copied in. Write after read: the copies out, below, overwrite the transfer buffer
+            // that these copies read. What the host wrote into it is visible by the submit itself.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
                           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
@@ -352,6 +370,7 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
             recordGather(cmd, false);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);
+            // For the host's reads, which the fence alone doesn't cover.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });

@@ -11,9 +11,9 @@
 namespace sconce
 {
 
-/// Where one probe's maps go: pieces of the arrays of a FieldData and of what the bounces need besides.
 inline constexpr float kProbeNear = 1e-4f; // share of the diagonal: the near plane of a probe's faces, nothing nearer is drawn
 
+/// Where one probe's maps go: pieces of the arrays of a FieldData and of what the bounces need besides.
 struct ProbeTarget
 {
     std::span<uint32_t> distance;

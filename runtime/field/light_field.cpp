@@ -52,6 +52,7 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // A new image: nothing used it, and nothing in it is kept.
             transition(gpu, cmd, *image,
                        {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                         VK_PIPELINE_STAGE_2_COPY_BIT, 0, VK_ACCESS_2_TRANSFER_WRITE_BIT});
@@ -59,6 +60,8 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
             copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
             copy.imageExtent = {size.x, size.y, size.z};
             gpu.vk.CmdCopyBufferToImage(cmd, staging->handle(), image->handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+            // Read after write. All commands: the set's stages are all of them, and a host's own shaders may trace in any; it happens once
+            // a field.
             transition(gpu, cmd, *image,
                        {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
@@ -125,6 +128,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.set.write(gpu::kFieldProbesBinding, made.probes);
     made.set.write(gpu::kFieldPatchesBinding, made.patches);
     made.set.write(gpu::kFieldOctreeBinding, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    // Last: the block that it fills holds the addresses of the buffers above.
     if (auto status = made.setQuality(quality); !status) return status.error();
     return LightField(state);
 }
@@ -238,6 +242,7 @@ void recordPass(const RayTracer::State& tracer, VkCommandBuffer cmd, VkDeviceAdd
 /// Whatever reads the hits next: the host's stages are not known here.
 void barrierAfterTrace(const Gpu& gpu, VkCommandBuffer cmd)
 {
+    // Read after write alone. Tracing into the same hits again is a write, which this doesn't order.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
 }
@@ -263,6 +268,7 @@ void recordTrace(const RayTracer& tracer, VkCommandBuffer cmd, const Buffer& ray
 Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds) const
 {
     assert(rays.size() == hits.size());
+    // 16 MiB of hits, as much as one staging copy takes.
     constexpr size_t kPiece = size_t(1) << 18;
     const size_t piece = std::min(rays.size(), kPiece);
     if (milliseconds) *milliseconds = 0.0;

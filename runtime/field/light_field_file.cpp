@@ -356,6 +356,7 @@ std::string tableProblem(const Table& table, uint64_t fileBytes)
     uint32_t section = 0, chunk = 0;
     for (const Block& block : table.blocks)
     {
+        // Sections in order and without gaps: no byte of the file is left that no checksum covers.
         const std::string name = "block '" + blockName(block) + "'";
         if (block.section >= sectionCount || block.section < section) return name + " is not where it belongs";
         chunk = block.section == section ? chunk : 0;
@@ -389,6 +390,7 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
         return damaged("header", 0, reader.size, "it has " + std::to_string(reader.size) + " bytes, fewer than a header");
     if (Status status = reader.read(0, std::as_writable_bytes(std::span(&table.header, 1))); !status) return status.error();
     const Header& header = table.header;
+    // Magic and checksum first: no field of the header is believed before them.
     if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0)
         return damaged("header", 0, sizeof(Header), "it does not begin as a .sconce file does");
     if (header.headerChecksum != checksum(bytesOf(header).first(offsetof(Header, headerChecksum))))
@@ -409,6 +411,7 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
                            "; it was cut short or added to");
     row("header", 0, sizeof(Header), "");
 
+    // A table of made-up length must not be allocated: it is held against the file's size.
     const uint64_t tableBytes = uint64_t(header.blocks) * sizeof(Block);
     if (header.blocks > kMaxBlocks || tableBytes > reader.size - sizeof(Header))
         return damaged("table", sizeof(Header), tableBytes, "its block table is larger than the file");
@@ -423,6 +426,7 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
     Footer footer{};
     const uint64_t footerOffset = reader.size - sizeof(Footer);
     if (Status status = reader.read(footerOffset, std::as_writable_bytes(std::span(&footer, 1))); !status) return status.error();
+    // The footer repeats the header's checksum: both ends are of the same save.
     if (footer.headerChecksum != header.headerChecksum || std::memcmp(footer.end, kEnd, sizeof(kEnd)) != 0)
         return damaged("footer", footerOffset, sizeof(Footer), "its footer is not the one its header calls for");
     row("footer", footerOffset, sizeof(Footer), "");
@@ -484,6 +488,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
         rawBytes[section] = sections[section].size();
+        // An empty section has one block, of 0 bytes.
         blockCount += std::max<uint64_t>(1, (rawBytes[section] + kChunkBytes - 1) / kChunkBytes);
     }
     std::string problem = sizeProblem(field.info, treeHeader, rawBytes);
@@ -492,6 +497,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
 
     Result<SafeFile> file = SafeFile::create(path);
     if (!file) return file.error();
+    // Room for header and table, which are written last: checksums and compressed sizes are not known earlier.
     uint64_t offset = sizeof(Header) + blockCount * sizeof(Block);
     if (Status status = file->append(Bytes(offset)); !status) return status;
     std::vector<Block> blocks;
@@ -577,6 +583,7 @@ Result<VerifyReport> verifyChecked(const std::filesystem::path& path)
         if (table.error().code == ErrorCode::fileError) return table.error();
         return report;
     }
+    // The footer's row goes to the end again: rows are in the order of the file.
     const BlockReport footer = report.blocks.back();
     report.blocks.pop_back();
     Bytes stored, raw;
@@ -589,6 +596,7 @@ Result<VerifyReport> verifyChecked(const std::filesystem::path& path)
             {blockName(block), block.offset, block.storedBytes, block.rawBytes, status ? "" : "does not match its checksum"});
     }
     report.blocks.push_back(footer);
+    // Sound blocks may still hold values that contradict each other, which loading finds.
     if (!report.ok()) return report;
     if (const Result<FieldData> field = loadChecked(path); !field) report.problem = field.error().message;
     return report;

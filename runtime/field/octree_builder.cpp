@@ -70,6 +70,7 @@ public:
             [&](VkCommandBuffer cmd)
             {
                 gpu.vk.CmdFillBuffer(cmd, surfels.handle(), 0, VK_WHOLE_SIZE, gpu::kNoSurfel);
+                // The samples enter by atomic minima, which read the fill and write over it.
                 memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
@@ -87,6 +88,7 @@ public:
     {
         const ivec3 blocks = (plan.build.count + gpu::kBlock - 1) / gpu::kBlock;
         const uint32_t count = uint32_t(blocks.x) * uint32_t(blocks.y) * uint32_t(blocks.z);
+        // A submit must end soon: drivers stop one that hangs, and progress and cancellation come between submits.
         const uint64_t judgesABlock = 64ull * plan.build.candidates * 25;
         const uint32_t together = uint32_t(std::clamp<uint64_t>(kJudgesASubmit / judgesABlock, 1, 32768));
         for (uint32_t first = 0; first < count; first += together)
@@ -122,6 +124,7 @@ private:
             [&](VkCommandBuffer cmd)
             {
                 // What an earlier submit wrote is visible: its fence was waited for, and only device memory access is left to order.
+                // From all commands: that was an upload's copy, the fill or another pass.
                 memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);

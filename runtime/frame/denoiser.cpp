@@ -39,12 +39,15 @@ Result<GpuImage> makeLightImage(Gpu& gpu, VkFormat format, uint32_t width, uint3
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // A new image: nothing used it, and nothing in it is kept.
             transition(gpu, cmd, *image,
                        {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_NONE, VK_PIPELINE_STAGE_2_CLEAR_BIT, 0,
                         VK_ACCESS_2_TRANSFER_WRITE_BIT});
+            // Passes write the pixels of their term alone; the others must be numbers all the same: the scan for NaN reads whole images.
             const VkClearColorValue nothing{};
             const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
             gpu.vk.CmdClearColorImage(cmd, image->handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
+            // All commands, reads and writes: this serves passes and a host's outputs alike, and happens once an image.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                           VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
         });
@@ -151,9 +154,13 @@ void Denoiser::blend(VkCommandBuffer cmd, VkDescriptorSet firstSet)
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     const VkClearColorValue nothing{};
     const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    // Two histories take turns: these points were written two frames ago and read by the blend of the frame before. The clear must come
+    // after both, which were compute passes.
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, transfer,
                   VK_ACCESS_2_TRANSFER_WRITE_BIT);
     gpu->vk.CmdClearColorImage(cmd, own.points.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all); // no pixel is of this frame yet
+    // The blend writes over the cleared points (hence transfer) and reads this frame's light, which the passes before made, and the other
+    // history, of the frame before (hence compute).
     memoryBarrier(*gpu, cmd, transfer | compute, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const VkDescriptorSet sets[] = {firstSet, own.blend.handle()};
@@ -168,6 +175,8 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
     const DescriptorSet* step = desc.temporal ? &histories[now].first : &forth;
     for (int stride : kStrides)
     {
+        // A step reads what the one before wrote, and writes over what that one read: light and scratch swap roles. Before the first step
+        // this orders the pass that made the light; after the last one the caller does.
         memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         const VkDescriptorSet sets[] = {firstSet, step->handle()};

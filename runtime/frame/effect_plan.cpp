@@ -130,6 +130,7 @@ Result<EffectPlan> planEffects(const SceneReport& scene, std::string_view wanted
         effect.on = effect.called && effect.ofScene &&
                     std::ranges::none_of(parts, [&](const std::string& part) { return std::ranges::find(kind, part) != kind.end(); });
     }
+    // In the order given: a later name overrides what an earlier one, or 'auto', has set.
     for (const std::string& part : parts)
     {
         const bool away = part.starts_with('-');

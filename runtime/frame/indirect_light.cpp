@@ -183,6 +183,8 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 {
     assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    // Write after read and after write: view, counts and images are the same ones each frame. Only our own passes are waited for, which are
+    // all compute.
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT); // the frame before may still read what this one writes
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
@@ -192,6 +194,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
     }
+    // Every pass reads the view; traces write over the cleared counts.
     memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
                   VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const auto timed = [&](const char* name, auto&& work)
@@ -223,12 +226,15 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     scan("diffuse trace", {&diffuseImage});
     pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace", everyLog());
     scan("glossy trace", {&glossyImage});
+    // Write after write: both traces store counts into one image. Passes before them share no image, so that nothing stands between those.
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     pass(mirrorPass, mirrorSet, gpu::kTermMirror, "mirror trace");
     scan("mirror trace", {&mirrorImage});
     if (glossyFill || diffuseFill)
     {
+        // Read after write: a fill takes light from the traced pixels about its own, and stores into the same image. One barrier for both
+        // fills: each has an image of its own.
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         pass(diffuseFill, diffuseFillSet, gpu::kTermDiffuse, "diffuse fill");
@@ -238,6 +244,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     }
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
+    // Who reads the outputs is the host's choice, so all commands; nothing later in the frame may write them without a barrier of its own.
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }

@@ -148,6 +148,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     made.materials = std::move(*materialBuffer);
 
     made.lightList = buildLightList(scene, space, desc.light);
+    // Room for one light at least: the array behind the header is bound even when it is empty.
     std::vector<std::byte> list(sizeof(gpu::LightsHeader) + std::max<size_t>(made.lightList.lights.size(), 1) * sizeof(gpu::GpuLight));
     std::memcpy(list.data(), &made.lightList.header, sizeof(gpu::LightsHeader));
     if (!made.lightList.lights.empty())
@@ -186,6 +187,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
                    made.textureSampler.handle());
     made.set.write(gpu::kLightsBinding, made.lightBuffer);
     if (auto status = made.makeShadowMaps(gpu, progress); !status) return status.error();
+    // Served the uploads only, so it goes before the scene's bytes are counted.
     gpu.releaseStaging();
     made.bytes = gpu.memory().used() - before;
     return made;
@@ -212,6 +214,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
                            nearestCompare, "The emitters' shadow maps"}};
     const auto toAttachment = [&](VkCommandBuffer cmd, const GpuImage& maps)
     {
+        // New images: nothing used them. Each layer is cleared where it is drawn.
         transition(gpu, cmd, maps,
                    {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
@@ -219,6 +222,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
     };
     const auto toSampled = [&](VkCommandBuffer cmd, const GpuImage& maps)
     {
+        // Read after write, for the draws of all submits before. All commands: who samples the scene's set first is not known here.
         transition(gpu, cmd, maps,
                    {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
@@ -251,8 +255,11 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
             if (kind.maps) to(cmd, kind.maps);
         if (noMaps) to(cmd, noMaps);
     };
+    // All layers at once and before any draw: the draws are submits of their own, and a transition from undefined drops what an image
+    // holds.
     auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); });
     if (!status) return status;
+    // A pipeline names the format of the depth it draws to: one for each format in use.
     DepthPipelines pipelines[2];
     for (int i = 0; i < 2; ++i)
     {
@@ -261,6 +268,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         if (!made) return made.error();
         pipelines[i] = std::move(*made);
     }
+    // A submit for each light rather than one for all, so that a bake can tell how far it is and be stopped.
     SceneDraws draws;
     for (size_t i = 0; i < lightList.lights.size(); ++i)
     {

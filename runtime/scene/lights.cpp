@@ -68,6 +68,7 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         area += own;
     }
     if (!(power > 0.0)) return;
+    // Half by power and half by area: a dim lamp alone in its room has samples beside bright ones elsewhere.
     double shares = 0.0;
     for (Emitter& emitter : emitters)
     {
@@ -93,6 +94,7 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         light.position = (point - space.origin) / space.scale;
         light.direction = geometricNormal(scene, emitter.triangle);
         light.intensity = emitter.emission;
+        // About count * share samples fall on an emitter; each stands for its part of the area.
         light.area = float(emitter.area / (count * emitter.share));
         carried += double(light.area) * luminance(emitter.emission);
         light.shadowLayer = kNoShadowMap;
@@ -151,6 +153,7 @@ void addSky(const Scene& scene, uint32_t count, LightList& list)
     for (uint32_t i = 0; i < count; ++i)
     {
         const float y = 1.0f - (2.0f * float(i) + 1.0f) / float(count), r = std::sqrt(std::max(0.0f, 1.0f - y * y));
+        // In double: a float with 65,536 turns before the point has few bits left for the fraction, which is all that counts.
         const double turn = double(i) * (std::numbers::phi - 1.0);
         const float angle = 2.0f * kPi * float(turn - std::floor(turn));
         gpu::GpuLight light{};

@@ -44,6 +44,8 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
     std::vector<vec3> positions(scene.positions.size());
     for (size_t i = 0; i < positions.size(); ++i) positions[i] = (scene.positions[i] - space.origin) / space.scale;
 
+    // Opaque triangles before masked ones, so that each kind is one stretch of the index buffer with a pipeline of its own; along a Morton
+    // curve within, so that clusters have small boxes and culling finds some to leave out.
     struct Key
     {
         uint32_t masked, code, triangle;
@@ -53,6 +55,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
         }
     };
     std::vector<Key> order(scene.triangles.size());
+    // A flat scene has no extent along one axis: nothing may be divided by 0.
     const vec3 low = space.sceneLow, size = glm::max(space.sceneHigh - space.sceneLow, vec3(1e-12f));
     for (uint32_t t = 0; t < order.size(); ++t)
     {
@@ -66,6 +69,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
     std::vector<Vertex> vertices;
     std::vector<uint32_t> indices;
     indices.reserve(3 * order.size());
+    // A vertex names its material, so one that two materials share is there twice.
     std::unordered_map<uint64_t, uint32_t> known; // (material, scene vertex) -> vertex
     known.reserve(positions.size());
     for (size_t i = 0; i < order.size(); ++i)

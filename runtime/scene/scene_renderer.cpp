@@ -126,10 +126,12 @@ Status SceneRenderer::make()
     if (!block) return block.error();
     frameBlock = std::move(*block);
     gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    // Once: the images of the G-buffer stay the same in all frames.
     indirect->setInputs(gBuffer);
 
     const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
+    // Below 0: surfaces keep their own. A specialization constant is 32 bits of any type, here a float's.
     const float roughness = settings.roughness.value_or(-1.0f);
     const ShaderConstant constant{gpu::kRoughnessOverrideId, std::bit_cast<uint32_t>(roughness)};
     Pipeline::Graphics desc;
@@ -250,6 +252,8 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     VkRenderingAttachmentInfo colors[4]{};
     for (int i = 0; i < 4; ++i)
     {
+        // Write after read: the frame before, or a copy of it to the host, may still read them, by whatever stage. From undefined: every
+        // pixel is cleared, so that nothing needs to be kept.
         transition(gpu, cmd, *targets[i],
                    {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
@@ -260,6 +264,7 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
         colors[i].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     }
     constexpr VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    // Depth likewise; its tests read it, too.
     transition(gpu, cmd, depth,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, tests,
                 VK_ACCESS_2_MEMORY_READ_BIT,
@@ -293,9 +298,11 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     gpu.vk.CmdEndRendering(cmd);
     constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     for (const GpuImage* target : targets)
+        // Read after write: compute passes alone read the G-buffer.
         transition(gpu, cmd, *target,
                    {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    // The same for depth, whichever tests wrote it.
     transition(gpu, cmd, depth,
                {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, read, tests, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
@@ -312,6 +319,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     view.size = {settings.width, settings.height};
     view.glossyRays = settings.glossyRays;
     view.raysBelow = settings.raysBelow;
+    // Without a frame before, or after a cut, view.follows stays 0 and histories count for nothing.
     if (before)
     {
         view.follows = 1;
@@ -328,9 +336,13 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         scanImage(gpu, cmd, "G-buffer", *image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    // Write after read and after write: passes of the frame before may still read its view, and write or read the pictures that this frame
+    // writes.
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
+    // Recorded, not written by the host: the frame before may still be running with its own view.
     gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
+    // Read after write: the view, which is all that the update wrote.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
 
     const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
@@ -346,6 +358,8 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 
     const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, bool withField = false)
     {
+        // Read after write: area light adds to the diffuse term in place, composition reads every term and direct light. All of them are
+        // compute passes.
         memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         if (timer) timer->begin(cmd, name);
@@ -360,6 +374,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "area light", indirect->state().diffuseImage);
     }
+    // After the area lights, whose noise is filtered together with the rest of the diffuse term.
     if (denoiser)
     {
         if (timer) timer->begin(cmd, "diffuse denoise");
@@ -373,6 +388,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (timer) timer->end(cmd);
     for (const GpuImage* image : {&beauty, &diffuseLayer, &glossyLayer})
         if (*image) scanImage(gpu, cmd, "compose", *image);
+    // Who shows or copies the picture is not known here.
     memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);
 }
@@ -388,6 +404,7 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // Read after write. From all commands: the G-buffer's images are written by draws, the others by compute passes.
             transition(gpu, cmd, image,
                        {layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
                         VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
@@ -395,9 +412,11 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
             copy.imageSubresource = {image.aspect(), 0, 0, 1};
             copy.imageExtent = {settings.width, settings.height, 1};
             gpu.vk.CmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer->handle(), 1, &copy);
+            // Back to the layout that the descriptors name; the next frame's writes come after the copy's reads.
             transition(gpu, cmd, image,
                        {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout, VK_PIPELINE_STAGE_2_COPY_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                         VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+            // For the host's reads, which the fence alone doesn't cover.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });
@@ -429,6 +448,7 @@ uint64_t SceneRenderer::deviceBytes() const
 Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
 {
     if (const std::string fault = cameraFault(camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    // Room for every pass that a frame can have, 13.
     auto timer = GpuTimer::create(gpu, 16);
     if (!timer) return timer.error();
     auto status = gpu.submit(

@@ -147,11 +147,13 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
         else
             use(material.baseColorTexture), use(material.emissionTexture);
     }
+    // All layers of an array have one size. A power of two, so that every mip is exactly half of the one above.
     size = std::min(size, std::bit_floor(maxSize));
 
     ImageDesc desc;
     desc.format = kind == TextureKind::color ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
     desc.width = desc.height = size;
+    // A scene without textures has a layer too: its binding wants an image, and no material names it.
     desc.layers = std::max(uint32_t(layers.size()), 1u);
     desc.mips = uint32_t(std::bit_width(size));
     desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -162,6 +164,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // A new image: nothing used it. In a submit of its own, since the copies come in many.
             transition(gpu, cmd, array.image,
                        {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                         VK_PIPELINE_STAGE_2_COPY_BIT, 0, VK_ACCESS_2_TRANSFER_WRITE_BIT});
@@ -201,6 +204,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
     status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
+            // Read after write, for the copies of all submits before. All commands: which draw or pass samples it first is not known here.
             transition(gpu, cmd, array.image,
                        {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});

@@ -76,6 +76,7 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     result = gpu->vk.CreateFence(host.device, &fenceInfo, host.allocationCallbacks, gpu->fence.fresh(*gpu));
     if (result != VK_SUCCESS) return gpu->failure("vkCreateFence", result);
+    // Last: the scan makes a pipeline and buffers with all that stands above.
     if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
     {
         auto scan = NanScan::create(*gpu);
@@ -96,6 +97,7 @@ Gpu::~Gpu()
 Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage, MemoryUse use, const char* what)
 {
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    // Vulkan has no buffers of 0 bytes, and what is empty is bound all the same.
     info.size = std::max<VkDeviceSize>(bytes, 16);
     info.usage = extraUsage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                  VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
@@ -145,6 +147,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = desc.usage | (scan ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0);
     const VkPhysicalDeviceLimits& limits = properties.limits;
+    // Asked here because the driver need not: beyond its limits vkCreateImage is undefined, not refused.
     const uint32_t side = volume ? limits.maxImageDimension3D : limits.maxImageDimension2D;
     if (std::max({desc.width, desc.height, desc.depth}) > side || desc.layers > limits.maxImageArrayLayers)
         return Error{ErrorCode::missingFeature, std::string(what) + " needs an image of " + std::to_string(desc.width) + " x " +
@@ -166,6 +169,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     if (scan) NanScan::note(made);
     const VkImageUsageFlags viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    // An image that is only copied may have no view.
     if (!(desc.usage & viewable)) return made;
     VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     view.image = made.image.get();
@@ -187,6 +191,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
 
 Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
 {
+    // One command buffer serves all submits: each is waited for, so that it is idle whenever this is called.
     VkResult result = vk.ResetCommandPool(host.device, commandPool.get(), 0);
     if (result != VK_SUCCESS) return failure("vkResetCommandPool", result);
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
@@ -206,6 +211,7 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
     result = vk.ResetFences(host.device, 1, &waited);
     if (result != VK_SUCCESS) return failure("vkResetFences", result);
+    // Read after the fence: only now have the scans run.
     return scan ? scan->findings() : success();
 }
 
@@ -237,6 +243,8 @@ Status Gpu::upload(const Buffer& target, VkDeviceSize offset, std::span<const st
             {
                 const VkBufferCopy copy{0, offset + done, part};
                 vk.CmdCopyBuffer(cmd, staging.handle(), target.handle(), 1, &copy);
+                // Whoever uses the target next, in whatever stage, and in later submits to the queue, which a barrier reaches too: they
+                // need none for uploads.
                 memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
             });
@@ -255,10 +263,12 @@ Status Gpu::download(const Buffer& source, VkDeviceSize offset, std::span<std::b
         auto status = submit(
             [&](VkCommandBuffer cmd)
             {
+                // Read after write: what filled the source, in an earlier submit, is not known here.
                 memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                               VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
                 const VkBufferCopy copy{offset + done, 0, part};
                 vk.CmdCopyBuffer(cmd, source.handle(), staging.handle(), 1, &copy);
+                // For the host's reads, which the fence alone doesn't cover.
                 memoryBarrier(*this, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                               VK_ACCESS_2_HOST_READ_BIT);
             });

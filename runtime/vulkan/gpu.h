@@ -126,6 +126,7 @@ private:
     explicit Gpu(const HostVulkan& lent);
     Status ensureStaging();
     Status makeTexelView(Buffer& buffer, VkFormat format);
+    // The first of these, so that it goes last: staging buffer and scan give their memory back to it.
     std::unique_ptr<GpuMemory> pool;
     Handle<VkCommandPool, &VulkanFunctions::DestroyCommandPool> commandPool;
     VkCommandBuffer commands = VK_NULL_HANDLE;

@@ -44,6 +44,7 @@ struct GpuMemory::Block
             if (start + wanted > end) continue;
             free.erase(free.begin() + std::ptrdiff_t(i));
             if (start + wanted < end) free.insert(free.begin() + std::ptrdiff_t(i), {start + wanted, end - start - wanted});
+            // What alignment skips stays free: a smaller piece may fit there.
             if (start > range.offset) free.insert(free.begin() + std::ptrdiff_t(i), {range.offset, start - range.offset});
             return start;
         }
@@ -54,6 +55,7 @@ struct GpuMemory::Block
     {
         auto next = std::lower_bound(free.begin(), free.end(), offset, [](const Range& r, VkDeviceSize o) { return r.offset < o; });
         next = free.insert(next, {offset, bytes});
+        // Joined with its neighbours, so that a block whose pieces are all back is one range and can be told to be empty.
         if (next + 1 != free.end() && next->offset + next->size == (next + 1)->offset)
         {
             next->size += (next + 1)->size;
@@ -122,6 +124,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
                                                  " refused more; lower the resolution or raise the memory budget"};
     };
     if (heldBytes + size > budgetBytes) return refused("the budget");
+    // Every buffer has a device address, and its memory must have been allocated for that; images need none.
     VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, linear ? &flags : nullptr};
@@ -144,6 +147,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
         void* pointer = nullptr;
         if (vk.MapMemory(host.device, added->memory, 0, VK_WHOLE_SIZE, 0, &pointer) != VK_SUCCESS)
         {
+            // The block is given back as if one piece of its whole size were, so that the budget is right again.
             Piece whole{added, 0, size};
             added->free.clear();
             release(whole);
@@ -160,6 +164,7 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
     if (type < 0)
         return Error{ErrorCode::missingFeature, std::string("The device has no memory type for ") + what + "; choose another device"};
     const bool mapped = use != MemoryUse::device;
+    // Memory types, buffers or images, mapped or not: blocks are kept apart by all three.
     if (needs.size < kLargeBytes)
     {
         for (Block& block : blocks)
@@ -168,6 +173,8 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
             if (const auto offset = block.take(needs.size, needs.alignment)) return Piece{&block, *offset, needs.size};
         }
     }
+    // Near the end of the budget a small resource gets a block of its own size: a shared one would be refused for room that nobody asked
+    // for.
     const bool shared = needs.size < kLargeBytes && heldBytes + kBlockBytes <= budgetBytes;
     auto block = addBlock(shared ? kBlockBytes : needs.size, uint32_t(type), linear, mapped, needs.size, what);
     if (!block) return block.error();

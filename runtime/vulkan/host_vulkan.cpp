@@ -30,6 +30,7 @@ struct MessageLog
 VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
 {
+    // Called on whichever thread makes the call at fault, so the log is locked.
     auto& log = *static_cast<MessageLog*>(user);
     std::scoped_lock lock(log.mutex);
     log.messages.emplace_back(data->pMessage);
@@ -234,6 +235,7 @@ struct OwnDevice::State
 
     ~State()
     {
+        // The messenger goes after the device, to hear what its destruction finds still alive.
         if (host.device) load<PFN_vkDestroyDevice>(host.instance, "vkDestroyDevice")(host.device, nullptr);
         if (messenger)
             load<PFN_vkDestroyDebugUtilsMessengerEXT>(host.instance, "vkDestroyDebugUtilsMessengerEXT")(host.instance, messenger, nullptr);
@@ -282,6 +284,7 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
     host.memoryBudget = desc.memoryBudget;
     if (state->validation)
     {
+        // The messenger in makeInstance() covers the making and the destruction of the instance alone; this one, all between.
         VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
         info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
         info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
@@ -293,6 +296,7 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
     auto chosen = chooseDevice(host.instance, desc.device);
     if (!chosen) return chosen.error();
     host.physicalDevice = *chosen;
+    // Before the device is made: vkCreateDevice refuses without saying which feature is absent.
     const std::vector<std::string> missing = missingFeatures(vkGetInstanceProcAddr, host.instance, *chosen);
     if (!missing.empty())
     {

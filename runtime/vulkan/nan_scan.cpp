@@ -50,6 +50,8 @@ void noteName(std::set<std::string_view> NanScan::Coverage::*set, const char* na
 
 void everythingBefore(const Gpu& gpu, VkCommandBuffer cmd)
 {
+    // Any pass may have written what is scanned, and any may use it next; scans share one scratch buffer besides. A diagnosis can afford to
+    // let nothing overlap.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
@@ -68,6 +70,7 @@ Result<std::unique_ptr<NanScan>> NanScan::create(Gpu& gpu)
     auto places = gpu.makeBuffer(kScans * sizeof(uint32_t), 0, MemoryUse::readback, "findings of the scan for NaN");
     if (!places) return places.error();
     made->places = std::move(*places);
+    // A scan lowers its place by an atomic minimum: 'nothing found' is the largest number there is.
     std::memset(made->places.mapped(), 0xff, made->places.size());
     made->scans.reserve(kScans);
     return made;
@@ -75,6 +78,7 @@ Result<std::unique_ptr<NanScan>> NanScan::create(Gpu& gpu)
 
 bool NanScan::takeSlot(const Scan& scan)
 {
+    // Remembered rather than reported here, in the middle of recording; findings() tells.
     tooMany = tooMany || scans.size() == kScans;
     if (tooMany) return false;
     scans.push_back(scan);
@@ -124,6 +128,7 @@ void NanScan::image(VkCommandBuffer cmd, const char* pass, const GpuImage& image
     constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     constexpr VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    // As wide for the same reason: the writer may be a draw or a pass.
     transition(gpu, cmd, image, {layout, source, all, all, any, any});
     const uint32_t rows = uint32_t(kScratchBytes / 4 / (VkDeviceSize(wordsAPixel) * width));
     for (uint32_t layer = 0; layer < layers; ++layer)
@@ -140,6 +145,7 @@ void NanScan::image(VkCommandBuffer cmd, const char* pass, const GpuImage& image
             words.kind = kind;
             dispatch(cmd, scratch.address(), wordsAPixel * width * high, wordsAPixel * width * (layer * height + y), words);
         }
+    // Back to what the frame's own barriers and descriptors take it to be in.
     transition(gpu, cmd, image, {source, layout, all, all, any, any});
 }
 

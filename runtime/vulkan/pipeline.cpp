@@ -24,6 +24,7 @@ Result<DescriptorSet> DescriptorSet::create(Gpu& gpu, std::span<const Binding> b
     VkResult result =
         gpu.vk.CreateDescriptorSetLayout(gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks, made.setLayout.fresh(gpu));
     if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorSetLayout", result);
+    // A pool for one set: the set lives and dies with it, beside all others.
     VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     poolInfo.maxSets = 1;
     poolInfo.poolSizeCount = uint32_t(sizes.size());
@@ -186,6 +187,8 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     VkPipelineColorBlendStateCreateInfo color{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     color.attachmentCount = uint32_t(blends.size());
     color.pAttachments = blends.data();
+    // Dynamic, so that one pipeline draws cube faces, shadow maps and frames of every size. Culling, since every second cube face is seen
+    // through a mirror, and two-sided scenes have none.
     const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE};
     VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
     dynamic.dynamicStateCount = uint32_t(std::size(dynamics));
