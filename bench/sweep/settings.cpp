@@ -123,6 +123,7 @@ Json settingsJson(const PointSettings& settings, Stage upTo)
 {
     Json json = Json::object();
     for (const Knob& knob : knobs())
+        // Knobs of other methods are left out, so that they are no part of the key by which a point is kept.
         if (has(knob, settings.method) && knob.stage <= upTo) json[std::string(knob.name)] = knob.get(settings);
     return json;
 }
