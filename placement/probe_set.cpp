@@ -85,6 +85,7 @@ Result<Json> readProbeFile(const std::filesystem::path& file)
     const uintmax_t bytes = std::filesystem::file_size(file, fault);
     std::ifstream in(file, std::ios::binary);
     if (fault || !in) return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read; check the path."};
+    // Before it is read: a wrong path may name a file of any size.
     if (bytes > kMostBytes) return badFile(file, fmt::format("it has {} bytes, more than any set of {} probes needs", bytes, kMostProbes));
     std::string text(static_cast<size_t>(bytes), '\0');
     if (!in.read(text.data(), std::streamsize(text.size())))

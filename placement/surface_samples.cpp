@@ -69,7 +69,10 @@ std::vector<Surfel> areaSurfels(const Scene& scene, const Visibility& visibility
                        const float root = std::sqrt(random.uniform()), split = random.uniform();
                        const vec3 point = (1.0f - root) * scene.positions[corners.x] + root * (1.0f - split) * scene.positions[corners.y] +
                                           root * split * scene.positions[corners.z];
+                       // Either side, since surfaces are seen from both; the test below drops the side that nobody gets to.
                        const vec3 normal = geometricNormal(scene, uint32_t(triangle)) * (random.uniform() < 0.5f ? 1.0f : -1.0f);
+                       // A surfel counts where free space lies before it: cells that touch the surface are not free, so the next ones are
+                       // asked, too.
                        for (const float cells : {0.75f, 1.5f, 2.25f})
                        {
                            const vec3 before = point + cells * space.field.voxel * normal;

@@ -17,6 +17,7 @@ Result<Visibility> Visibility::build(const Scene& scene)
         return Error{ErrorCode::badInput, "Scene '" + scene.name + "' has " + std::to_string(scene.triangles.size()) +
                                               " triangles and none with a visible surface; probes need something to see."};
     const vec3 farthest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+    // The rounding of positions grows with their distance from the origin, not with the scene's size alone.
     const float epsilon = 1e-5f * (bounds.diagonal() + 0.1f * std::max({farthest.x, farthest.y, farthest.z}));
     return Visibility(std::move(*rays), bounds, epsilon);
 }

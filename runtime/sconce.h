@@ -122,8 +122,9 @@ public:
 
     /// Binds the G-buffer; before the first record and whenever its views change. Not while the GPU runs a recorded frame.
     void setInputs(const FrameInputs& inputs);
-    /// Record frames in the order in which they are shown, where the effect `temporal` is on. Ends with the barrier that lets any later
-    /// stage read the outputs.
+    /// Record frames in the order in which they are shown, where the effect `temporal` is on. The G-buffer must be visible to compute
+    /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
+    /// any later stage read these.
     /// @param timer  optional; scopes "classify tiles", "gather light", "diffuse trace", "glossy trace", "mirror trace", "diffuse fill",
     ///               "glossy fill", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
@@ -155,8 +156,8 @@ public:
 
     /// Records the trace of `count` rays; ends with the barrier that lets any stage read the hits. Any number of records may be in one
     /// command buffer and in flight at once. Never allocates, throws or submits.
-    /// @param rays  device address of gpu::Ray[count]
-    /// @param hits  device address of gpu::RayHit[count]; must not overlap the rays
+    /// @param rays  device address of gpu::Ray[count], visible to compute shaders by then
+    /// @param hits  device address of gpu::RayHit[count], of this record alone until it is done
     void record(VkCommandBuffer cmd, VkDeviceAddress rays, VkDeviceAddress hits, uint32_t count) const noexcept;
     /// Uploads, traces and downloads, in pieces of at most 2^18 rays; waits for the result. Misuse: spans of different length assert.
     /// @param milliseconds  of the trace passes alone, by the GPU's clock; 0 when the queue has none

@@ -192,6 +192,7 @@ SurfacePoint evaluateMaterial(const Scene& scene, uint32_t material, vec2 uv)
 
 std::string validate(const Scene& scene)
 {
+    // Indices first: everything after this may follow them without asking.
     if (std::string fault = geometryFault(scene); !fault.empty()) return fault;
     const auto imageFault = [](const Image& image) -> std::string
     {

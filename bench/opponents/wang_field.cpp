@@ -35,6 +35,7 @@ using Text = twin::LightFieldTwin<float>;
 uint32_t radialBounds(Text& text, uint32_t word, uint32_t x, uint32_t y, uint32_t size)
 {
     const uint32_t q = text.texelBounds(word); // q's maximum, and its minimum in the upper half
+    // Sky is bounded as infinitely far, so that a ray marches past it.
     if ((word & 0xffffu) == 0) return kSky | (kSky << 16);
     const float low = 2.0f / float(size);
     const auto nearest = [&](uint32_t i) // of the interval [i, i + 1] of texels, in [-1, 1], to the face's middle
@@ -44,6 +45,7 @@ uint32_t radialBounds(Text& text, uint32_t word, uint32_t x, uint32_t y, uint32_
     };
     const auto furthest = [&](uint32_t i) { return std::max(std::abs(low * float(i) - 1.0f), std::abs(low * float(i + 1) - 1.0f)); };
     const auto length = [](float u, float v) { return std::sqrt(1.0f + u * u + v * v); };
+    // A few roundings wider on either side, and rounded outwards to halves: bounds must hold what they bound.
     const float least = length(nearest(x), nearest(y)) / text.halfToReal(q) * 0.999999f;
     const float qLeast = text.halfToReal(q >> 16);
     const float greatest = qLeast > 0.0f ? length(furthest(x), furthest(y)) / qLeast * 1.000001f : 65504.0f;

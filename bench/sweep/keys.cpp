@@ -92,6 +92,7 @@ std::string keyOf(const Scene& scene)
     {
         hash.add(m.baseColor), hash.add(m.baseColorTexture), hash.add(m.metallic), hash.add(m.roughness);
         hash.add(m.metallicRoughnessTexture), hash.add(m.emission), hash.add(m.emissionTexture), hash.add(m.alphaCutoff);
+        hash.add(m.doubleSided);
     }
     for (const Image& image : scene.images) hash.add(image.width), hash.add(image.height), hash.addAll(image.rgba);
     for (const Light& light : scene.lights)
@@ -99,7 +100,7 @@ std::string keyOf(const Scene& scene)
         hash.add(light.type), hash.add(light.position), hash.add(light.direction), hash.add(light.intensity);
         hash.add(light.range), hash.add(light.innerCone), hash.add(light.outerCone);
     }
-    hash.add(scene.sky);
+    hash.add(scene.sky), hash.add(scene.twoSided);
     return hex(hash.value());
 }
 

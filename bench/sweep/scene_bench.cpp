@@ -28,7 +28,6 @@ namespace
 constexpr uint32_t kTimerScopes = 32;
 constexpr uint32_t kTemporalFrames = 16; // of a still camera, before a picture that is filtered over time is judged
 constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
-constexpr double kWrongRelMse = 1.0; // of beauty: as far from the truth as a black picture
 constexpr uint64_t kPathSeed = 1000; // the path tracer's paths are not the reference's
 
 double secondsNow()

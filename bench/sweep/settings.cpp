@@ -132,6 +132,7 @@ const SweptKnob* findKnob(std::string_view name)
 Json settingsJson(const PointSettings& settings, Stage upTo)
 {
     Json json = Json::object();
+    // Knobs of other methods are left out, so that they are no part of the key by which a point is kept.
     for (const SweptKnob& knob : sweptKnobs())
         if (has(knob, settings.method) && knob.stage <= upTo) json[std::string(knob.name)] = knob.get(settings);
     return json;

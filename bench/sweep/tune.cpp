@@ -52,6 +52,7 @@ Result<Json> tune(const std::vector<Json>& points, const TuneGoal& goal)
         const auto over = excess(point, goal);
         const auto figure = figureOf(point, wanted);
         if (!over || !figure) continue;
+        // Of those that keep to the goal the best; where none does, the one that misses it least is named.
         if (*over == 1.0 && (!best || *figure < bestFigure)) best = &point, bestFigure = *figure;
         if (!nearest || *over < nearestExcess) nearest = &point, nearestExcess = *over;
     }

@@ -183,10 +183,10 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 {
     assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    // Write after read and after write: view, counts and images are the same ones each frame. Only our own passes are waited for, which are
-    // all compute.
-    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
-                  VK_ACCESS_2_MEMORY_WRITE_BIT); // the frame before may still read what this one writes
+    // Write after read and after write: view, counts and images are the same ones each frame. The frame before may still read its outputs
+    // in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for.
+    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT);
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
     if (countImage)
     {

@@ -51,9 +51,10 @@ void noteName(std::set<std::string_view> NanScan::Coverage::*set, const char* na
 void everythingBefore(const Gpu& gpu, VkCommandBuffer cmd)
 {
     // Any pass may have written what is scanned, and any may use it next; scans share one scratch buffer besides. A diagnosis can afford to
-    // let nothing overlap.
+    // let nothing overlap. The host reads the places after the fence, and ALL_COMMANDS is no stage of its own.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
 } // namespace

@@ -62,11 +62,16 @@ TEST(Keys, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)
     moved.positions[0].x += 1e-6f;
     painted.materials[0].roughness += 1e-6f;
     lit.sky.x += 1e-6f;
+    Scene oneSided = *scene, doubled = *scene;
+    oneSided.twoSided = !oneSided.twoSided;
+    doubled.materials[0].doubleSided = !doubled.materials[0].doubleSided;
     const std::string key = keyOf(*scene);
     EXPECT_EQ(keyOf(renamed), key);
     EXPECT_NE(keyOf(moved), key);
     EXPECT_NE(keyOf(painted), key);
     EXPECT_NE(keyOf(lit), key);
+    EXPECT_NE(keyOf(oneSided), key);
+    EXPECT_NE(keyOf(doubled), key);
 }
 
 } // namespace
