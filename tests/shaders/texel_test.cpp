@@ -1,6 +1,5 @@
-// Words of the distance maps, charts and packed colours, against closed forms.
+// Words of the distance maps, against closed forms.
 #include <cmath>
-#include <random>
 
 #include <gtest/gtest.h>
 
@@ -12,52 +11,11 @@ namespace sconce
 namespace
 {
 
-using glm::vec2;
-using glm::vec3;
-
 struct Text
 {
     FieldData field;
     twin::LightFieldTwin<float> f{field, {}};
-    twin::LightFieldTwin<double> d{field, {}};
 };
-
-vec3 randomDirection(std::mt19937& random)
-{
-    std::normal_distribution<float> normal;
-    return glm::normalize(vec3(normal(random), normal(random), normal(random)));
-}
-
-TEST(Chart, FaceCoordinatesInvert)
-{
-    Text text;
-    std::mt19937 random(1);
-    for (int i = 0; i < 10000; ++i)
-    {
-        const vec3 p = randomDirection(random);
-        for (int face = 0; face < 6; ++face) EXPECT_EQ(text.f.faceDirection(face, text.f.faceCoordinates(face, p)), p);
-        const vec3 on = text.f.faceCoordinates(text.f.dominantFace(p), p);
-        EXPECT_GE(on.z, std::max(std::abs(on.x), std::abs(on.y)));
-    }
-}
-
-TEST(Chart, OctahedralMapInvertsAlsoOnEdgesAndCorners)
-{
-    Text text;
-    std::mt19937 random(2);
-    auto check = [&](vec3 d)
-    {
-        const vec2 uv = text.f.octahedralFromDirection(d);
-        EXPECT_GE(uv.x, 0.0f);
-        EXPECT_LE(uv.y, 1.0f);
-        EXPECT_NEAR(glm::distance(text.f.directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f) << d.x << " " << d.y << " " << d.z;
-    };
-    for (int i = 0; i < 10000; ++i) check(randomDirection(random));
-    for (float x : {-1.0f, -0.0f, 0.0f, 1.0f})
-        for (float y : {-1.0f, 0.0f, 1.0f})
-            for (float z : {-1.0f, -0.0f, 0.0f, 1.0f})
-                if (x != 0.0f || y != 0.0f || z != 0.0f) check(vec3(x, y, z));
-}
 
 TEST(Texel, GradientRoundsToNearestStep)
 {
@@ -70,27 +28,6 @@ TEST(Texel, GradientRoundsToNearestStep)
     }
     EXPECT_FLOAT_EQ(text.f.unpackGradient(text.f.packGradient(0.9f)), 0.15f) << "saturates";
     EXPECT_EQ(text.f.unpackGradient(text.f.packGradient(0.0f)), 0.0f);
-}
-
-TEST(Colour, RadianceRoundTripsWithinItsMantissa)
-{
-    Text text;
-    std::mt19937 random(6);
-    std::uniform_real_distribution<float> exponent(-10.0f, 15.0f);
-    for (int i = 0; i < 10000; ++i)
-    {
-        const vec3 c(std::exp2(exponent(random)), std::exp2(exponent(random)), std::exp2(exponent(random)));
-        const vec3 r = text.f.unpackRadiance(text.f.packRadiance(c));
-        EXPECT_NEAR(r.x, c.x, c.x / 120.0f);
-        EXPECT_NEAR(r.y, c.y, c.y / 120.0f);
-        EXPECT_NEAR(r.z, c.z, c.z / 60.0f);
-    }
-    EXPECT_EQ(text.f.unpackRadiance(text.f.packRadiance(vec3(0.0f))), vec3(0.0f));
-    const vec3 extreme = text.f.unpackRadiance(text.f.packRadiance(vec3(1e9f, std::nanf(""), -3.0f)));
-    EXPECT_GT(extreme.x, 60000.0f);
-    EXPECT_TRUE(std::isfinite(extreme.x));
-    EXPECT_EQ(extreme.y, 0.0f);
-    EXPECT_EQ(extreme.z, 0.0f);
 }
 
 } // namespace
