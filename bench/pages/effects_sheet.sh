@@ -56,4 +56,4 @@ sky|temple|16|diffuse_indirect|area light,diffuse denoise|--effects diffuse|
 curtains, leaves|$scenes/sponza/Sponza.gltf|54|diffuse_indirect|gather light,area light,diffuse denoise|--effects diffuse|
 moving object|$out/guest.gltf|12|beauty|gather light,glossy trace,glossy denoise,area light,diffuse denoise|--effects auto||$out/host.gltf
 LIST
-python3 bench/pages/sheet.py "$out/effects.png" 1 "${pictures[@]}"
+bench/pages/sheet.py "$out/effects.png" 1 "${pictures[@]}"

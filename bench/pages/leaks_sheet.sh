@@ -34,4 +34,4 @@ name = "curtain" if wall == "curtain" else f"wall of {wall} cm"
 print(f"| {name} | {both['relmse']:.4f} | {both['flip']:.3f} | {right['relmse']:.6f} | {right['flip']:.3f} |")
 P
 done
-python3 bench/pages/sheet.py "$out/leaks.png" 3 "${pictures[@]}"
+bench/pages/sheet.py "$out/leaks.png" 3 "${pictures[@]}"

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Would a fresh Debian have what this build reads?
 
-packages.py BUILD LIST... [--without PACKAGE]
+packages.py BUILD LIST... [--without PACKAGE]...
 
 Asks apt which packages an install of the LISTs brings onto an empty system (no recommended ones), and dpkg which package owns every file
 that ninja and CMake read from outside the source tree, and every program they found. Exits 1 and names file and package where such a
-package is not among them, 77 where apt can't say. --without strikes a package from the lists first: the planted miss of the tests.
+package is not among them, 77 where apt can't say. --without strikes a package from the lists first: the planted misses of the tests.
 """
 import argparse
 import os
@@ -26,7 +26,7 @@ def wanted_packages(lists, without):
     for path in lists:
         with open(path, encoding="utf-8") as lines:
             wanted += [match[1] for match in map(LIST_LINE.match, lines) if match]
-    return [package for package in wanted if package != without]
+    return [package for package in wanted if package not in without]
 
 
 def essential_packages():
@@ -82,7 +82,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build")
     parser.add_argument("lists", nargs="+")
-    parser.add_argument("--without", default="")
+    parser.add_argument("--without", action="append", default=[])
     arguments = parser.parse_args()
 
     fresh = freshly_installed(wanted_packages(arguments.lists, arguments.without))

@@ -1,4 +1,6 @@
-// Our tracer on octahedral maps: the octants as charts, and its answers beside Embree's.
+// The charts of a sphere, each against its inverse, and our tracer on octahedral maps beside Embree.
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -17,6 +19,41 @@ namespace
 {
 
 using namespace testing_support;
+
+glm::vec3 randomDirection(std::mt19937& random)
+{
+    std::normal_distribution<float> normal;
+    return glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+}
+
+TEST(Chart, FaceCoordinatesInvert)
+{
+    std::mt19937 random(1);
+    for (int i = 0; i < 10000; ++i)
+    {
+        const glm::vec3 p = randomDirection(random);
+        for (int face = 0; face < 6; ++face) EXPECT_EQ(Pure<float>::faceDirection(face, Pure<float>::faceCoordinates(face, p)), p);
+        const glm::vec3 on = Pure<float>::faceCoordinates(Pure<float>::dominantFace(p), p);
+        EXPECT_GE(on.z, std::max(std::abs(on.x), std::abs(on.y)));
+    }
+}
+
+TEST(Chart, OctahedralMapInvertsAlsoOnEdgesAndCorners)
+{
+    std::mt19937 random(2);
+    auto check = [&](glm::vec3 d)
+    {
+        const glm::vec2 uv = Pure<float>::octahedralFromDirection(d);
+        EXPECT_GE(uv.x, 0.0f);
+        EXPECT_LE(uv.y, 1.0f);
+        EXPECT_NEAR(glm::distance(Pure<float>::directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f) << d.x << " " << d.y << " " << d.z;
+    };
+    for (int i = 0; i < 10000; ++i) check(randomDirection(random));
+    for (float x : {-1.0f, -0.0f, 0.0f, 1.0f})
+        for (float y : {-1.0f, 0.0f, 1.0f})
+            for (float z : {-1.0f, -0.0f, 0.0f, 1.0f})
+                if (x != 0.0f || y != 0.0f || z != 0.0f) check(glm::vec3(x, y, z));
+}
 
 TEST(Octants, AreProjectiveChartsOfTheOctahedralMap)
 {

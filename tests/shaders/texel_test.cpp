@@ -1,6 +1,5 @@
-// Words of the distance maps, charts and packed colours, against closed forms.
+// Words of the distance maps, against closed forms.
 #include <cmath>
-#include <random>
 
 #include <gtest/gtest.h>
 
@@ -17,41 +16,6 @@ using glm::vec3;
 
 using Text = Pure<float>;
 
-vec3 randomDirection(std::mt19937& random)
-{
-    std::normal_distribution<float> normal;
-    return glm::normalize(vec3(normal(random), normal(random), normal(random)));
-}
-
-TEST(Chart, FaceCoordinatesInvert)
-{
-    std::mt19937 random(1);
-    for (int i = 0; i < 10000; ++i)
-    {
-        const vec3 p = randomDirection(random);
-        for (int face = 0; face < 6; ++face) EXPECT_EQ(Text::faceDirection(face, Text::faceCoordinates(face, p)), p);
-        const vec3 on = Text::faceCoordinates(Text::dominantFace(p), p);
-        EXPECT_GE(on.z, std::max(std::abs(on.x), std::abs(on.y)));
-    }
-}
-
-TEST(Chart, OctahedralMapInvertsAlsoOnEdgesAndCorners)
-{
-    std::mt19937 random(2);
-    auto check = [&](vec3 d)
-    {
-        const vec2 uv = Text::octahedralFromDirection(d);
-        EXPECT_GE(uv.x, 0.0f);
-        EXPECT_LE(uv.y, 1.0f);
-        EXPECT_NEAR(glm::distance(Text::directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f) << d.x << " " << d.y << " " << d.z;
-    };
-    for (int i = 0; i < 10000; ++i) check(randomDirection(random));
-    for (float x : {-1.0f, -0.0f, 0.0f, 1.0f})
-        for (float y : {-1.0f, 0.0f, 1.0f})
-            for (float z : {-1.0f, -0.0f, 0.0f, 1.0f})
-                if (x != 0.0f || y != 0.0f || z != 0.0f) check(vec3(x, y, z));
-}
-
 TEST(Texel, GradientRoundsToNearestStep)
 {
     for (float g = -0.14f; g <= 0.14f; g += 0.001f)
@@ -64,6 +28,7 @@ TEST(Texel, GradientRoundsToNearestStep)
     EXPECT_EQ(Text::unpackGradient(Text::packGradient(0.0f)), 0.0f);
 }
 
+<<<<<<< HEAD
 TEST(Colour, RadianceRoundTripsWithinItsMantissa)
 {
     std::mt19937 random(6);
@@ -84,5 +49,7 @@ TEST(Colour, RadianceRoundTripsWithinItsMantissa)
     EXPECT_EQ(extreme.z, 0.0f);
 }
 
+=======
+>>>>>>> tests
 } // namespace
 } // namespace sconce

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/sweep/settings.h"
 #include "scene/builtin_scenes.h"
 #include "tests/support/files.h"
 
@@ -72,6 +73,22 @@ TEST(Keys, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)
     EXPECT_NE(keyOf(lit), key);
     EXPECT_NE(keyOf(oneSided), key);
     EXPECT_NE(keyOf(doubled), key);
+}
+
+TEST(Keys, TellScenesAndSettingsApart)
+{
+    Scene scene = *makeBuiltinScene("cornell");
+    const std::string key = keyOf(scene);
+    EXPECT_EQ(key, keyOf(*makeBuiltinScene("cornell")));
+    scene.lights.push_back({});
+    EXPECT_NE(key, keyOf(scene));
+    scene = *makeBuiltinScene("cornell");
+    scene.materials.back().roughness += 0.01f;
+    EXPECT_NE(key, keyOf(scene));
+    scene = *makeBuiltinScene("cornell");
+    scene.name = "another name";
+    EXPECT_EQ(key, keyOf(scene));
+    EXPECT_NE(keyOf(Json{{"rays", 1}}), keyOf(Json{{"rays", 2}}));
 }
 
 } // namespace

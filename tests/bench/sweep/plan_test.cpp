@@ -4,11 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/sweep/keys.h"
-#include "bench/sweep/probe_sets.h"
 #include "bench/sweep/sweep.h"
-#include "bench/sweep/tune.h"
-#include "scene/builtin_scenes.h"
 
 namespace sconce
 {
@@ -48,79 +44,6 @@ TEST(Plan, AKnobThatIsNotThereIsASentence)
     const auto plan = planPoints(settings);
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.error().message.find("no knob 'colour'; there are: probes"), std::string::npos) << plan.error().message;
-}
-
-TEST(Settings, OfEveryPlannedPointComeBackFromTheirJson)
-{
-    const auto plan = planPoints(ofSixteen());
-    for (const PlannedPoint& point : *plan)
-    {
-        const auto again = settingsFrom(point.settings.method, settingsJson(point.settings));
-        ASSERT_TRUE(again.ok()) << point.id << ": " << again.error().message;
-        EXPECT_EQ(settingsJson(*again), settingsJson(point.settings)) << point.id;
-    }
-    EXPECT_FALSE(settingsFrom("ours", {{"colour", 1}}).ok());
-    EXPECT_FALSE(settingsFrom("ours", {{"rays", "many"}}).ok());
-    EXPECT_FALSE(settingsFrom(kPathTracer, {{"ranked", 2}}).ok());
-}
-
-// "field" for a knob that is on or off was left out of the sweep without a word.
-TEST(Settings, EveryValueOfASweepIsOneOfItsKnob)
-{
-    for (const SweptKnob& knob : sweptKnobs())
-        for (const std::string_view value : knob.sweep)
-        {
-            PointSettings settings;
-            EXPECT_TRUE(knob.set(settings, value)) << knob.name << " " << value;
-        }
-    for (const QualityLevel& level : qualityLevels()) // by the values' texts, as files of settings have them
-    {
-        PointSettings settings;
-        applyLevel(settings, level);
-        EXPECT_TRUE(settingsFrom("ours", settingsJson(settings)).ok()) << level.name;
-    }
-}
-
-// `set` holds to the table: nothing beyond a knob's range can be swept or come from a file.
-TEST(Settings, AValueBeyondTheRangeOfItsKnobIsRefused)
-{
-    PointSettings settings;
-    for (const auto& [name, value] : {std::pair{"rays", "65"}, std::pair{"rays", "0"}, std::pair{"trace every", "3"},
-                                      std::pair{"opinion", "nan"}, std::pair{"placement", "anywhere"}, std::pair{"hand-offs", "65"}})
-        EXPECT_FALSE(findKnob(name)->set(settings, value)) << name << " " << value;
-    EXPECT_EQ(settingsJson(settings), settingsJson(PointSettings()));
-    EXPECT_NE(settingsFrom("ours", {{"rays", 65}}).error().message.find("give 1 to 64 rays a pixel"), std::string::npos);
-}
-
-TEST(Keys, TellScenesAndSettingsApart)
-{
-    Scene scene = *makeBuiltinScene("cornell");
-    const std::string key = keyOf(scene);
-    EXPECT_EQ(key, keyOf(*makeBuiltinScene("cornell")));
-    scene.lights.push_back({});
-    EXPECT_NE(key, keyOf(scene));
-    scene = *makeBuiltinScene("cornell");
-    scene.materials.back().roughness += 0.01f;
-    EXPECT_NE(key, keyOf(scene));
-    scene = *makeBuiltinScene("cornell");
-    scene.name = "another name";
-    EXPECT_EQ(key, keyOf(scene));
-    EXPECT_NE(keyOf(Json{{"rays", 1}}), keyOf(Json{{"rays", 2}}));
-}
-
-TEST(PowerOfTwoShape, IsNearestInCountThenInShape)
-{
-    const auto shape = [](vec3 size, uint32_t count)
-    {
-        Bounds bounds;
-        bounds.add(vec3(0.0f));
-        bounds.add(size);
-        return powerOfTwoShape(bounds, count);
-    };
-    EXPECT_EQ(shape({8, 3, 8}, 32), glm::ivec3(4, 2, 4));
-    EXPECT_EQ(shape({1, 1, 1}, 8), glm::ivec3(2, 2, 2));
-    EXPECT_EQ(shape({8, 1, 1}, 54), glm::ivec3(16, 2, 2)); // 64 is nearer in ratio than 32
-    EXPECT_EQ(shape({5, 5, 5}, 1), glm::ivec3(1, 1, 1));
 }
 
 // Two groups of which the second ran while the machine was twice as busy: on one scale they agree.

@@ -7,7 +7,6 @@
 
 #include "runtime/bake/prefilter.h"
 #include "runtime/field/tracer_cpu.h"
-#include "runtime/frame/environment_brdf.h"
 #include "shaders/shared/brdf.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/pure.h"
@@ -115,37 +114,6 @@ TEST(Prefilter, NoSeamWhereTheMapFolds)
         const vec3 above(std::cos(phi), std::sin(phi), 1e-5f), below(std::cos(phi), std::sin(phi), -1e-5f);
         for (float width : {0.05f, 0.2f, 0.6f})
             EXPECT_LT(glm::distance(text.prefilteredRadiance(0, above, width), text.prefilteredRadiance(0, below, width)), 5e-3f);
-    }
-}
-
-TEST(EnvironmentBrdf, IsWhatTheBrdfReflectsOfWhiteLight)
-{
-    const std::vector<vec2> table = environmentBrdf();
-    constexpr int n = int(gpu::kEnvironmentBrdfSide);
-    for (const auto& [row, column] : {std::pair{12, 31}, {12, 8}, {16, 20}, {24, 4}, {31, 31}, {31, 10}})
-    {
-        const float roughness = float(row) / (n - 1), cosine = float(column) / (n - 1);
-        for (float atNormal : {0.04f, 1.0f})
-        {
-            BrdfSurface surface;
-            surface.baseColor = vec3(atNormal);
-            surface.metallic = 1.0f;
-            surface.roughness = roughness;
-            const vec3 view(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-            double sum = 0.0;
-            constexpr int kSteps = 1000; // over the hemisphere of light
-            for (int i = 0; i < kSteps; ++i)
-                for (int j = 0; j < kSteps; ++j)
-                {
-                    const double z = (i + 0.5) / kSteps, phi = 2.0 * std::numbers::pi * (j + 0.5) / kSteps, r = std::sqrt(1.0 - z * z);
-                    const vec3 light(float(r * std::cos(phi)), float(r * std::sin(phi)), float(z));
-                    sum += evaluateBrdf(surface, {0, 0, 1}, view, light).specular.x * z;
-                }
-            sum *= 2.0 * std::numbers::pi / (double(kSteps) * kSteps);
-            const vec2 share = table[size_t(row * n + column)];
-            EXPECT_NEAR(atNormal * share.x + share.y, sum, 0.005 * std::max(sum, 0.1))
-                << "roughness " << roughness << ", cosine " << cosine;
-        }
     }
 }
 
