@@ -1,6 +1,8 @@
 // The door: handles that keep alive what they need.
 #include "runtime/sconce.h"
 
+#include <cmath>
+#include <cstring>
 #include <optional>
 
 #include <gtest/gtest.h>
