@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "light_field.glsl"
+#include "shared/frame.h" // termsOf(), for a lighting pass
 #if SCONCE_GLSL_VERSION != 1
 #error "written for version 1 of light_field.glsl"
 #endif
