@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The programs that race tracers, from end to end on one small light field.
 
-race_programs.py SCONCE RAY_ACCURACY REPLAY TESSELLATION
+race_programs.py RAY_ACCURACY REPLAY TESSELLATION
 
-Rays recorded by sconce_ray_accuracy and traced again by sconce_replay have the same answers; a scene cut finer has nearly the same.
+sconce_tessellation cuts and bakes a scene; rays of it that sconce_ray_accuracy records have the same answers from sconce_replay.
 """
 import json
 import pathlib
@@ -30,30 +30,31 @@ def untimed(rows):
 
 
 def main():
-    sconce, ray_accuracy, replay, tessellation = sys.argv[1:]
+    ray_accuracy, replay, tessellation = sys.argv[1:]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
-        probes, field, rays = folder / "p.json", folder / "f.sconce", folder / "r.rays"
-        run(sconce, "place", "cornell", "-o", probes, "--count", 4, "-q")
-        run(sconce, "bake", "cornell", "--probes", probes, "-o", field, "--resolution", 128, "--bounces", 0, "-q")
+        probes, rays = folder / "p.json", folder / "r.rays"
+        places = ([0, 1.5, 0.5], [-0.8, 0.5, 0.6], [0.8, 0.5, -0.4])
+        probes.write_text(json.dumps({"probes": [{"position": place} for place in places]}), encoding="utf-8")
+
+        cut = run(tessellation, "cornell", "--probes", probes, "-o", folder, "--triangles", 100, "--resolution", 64, "--rays", 500)
+        baked = list(folder.glob("*.sconce"))
+        expect(len(baked) == 1 and 100 <= int(baked[0].stem) <= 101, f"cut to 100 triangles, it made {baked}")
+        expect(baked[0].stem + "," in cut.stdout, f"no row of {baked[0].stem} triangles:\n{cut.stdout}")
+        field = baked[0]
 
         fields = ["--field", field, "--field", f"ours/ranked:1={field}", "--cpu", "--json"]
         first = json.loads(run(ray_accuracy, "cornell", *fields, "--rays", 2000, "--record", rays).stdout)
         again = json.loads(run(replay, rays, *fields).stdout)
         expect(len(first) == 2, f"two tracers raced, {len(first)} answered")
         expect(untimed(first) == untimed(again), f"replayed rays have other answers:\n{json.dumps(first, indent=1)}\n{json.dumps(again, indent=1)}")
-        expect(first[0]["right_1"] > 0.95, f"ours is wrong: {first[0]}")
-        other = json.loads(run(ray_accuracy, "cornell", *fields, "--rays", 2000, "--seed", 2).stdout)
-        expect(untimed(other) != untimed(first), "another seed gives the same rays")
+        expect(first[0]["right_1"] > 0.85, f"ours is wrong: {first[0]}")
         timed = json.loads(run(replay, rays, "--field", field, "--runs", 2, "--timed", 500, "--json").stdout)
         expect(untimed(timed) != timed, f"timed runs have no times: {timed}")
 
         run(replay, folder / "none.rays", "--field", field, code=5)
         refused = run(replay, rays, "--field", f"theirs={field}", code=2).stderr
         expect("theirs" in refused, f"a tracer that isn't there is not named: {refused}")
-
-        cut = run(tessellation, "cornell", "--probes", probes, "-o", folder, "--triangles", 100, 1000, "--resolution", 64, "--rays", 500)
-        expect("1000" in cut.stdout, cut.stdout)
 
 
 if __name__ == "__main__":
