@@ -146,7 +146,7 @@ Result<Json> readResults(const std::filesystem::path& file)
     std::ifstream stream(file);
     if (!stream) return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read; give the results.json of a bench."};
     Json json = Json::parse(stream, nullptr, false);
-    if (json.is_discarded() || !json.is_object() || json.value("schema", 0) != kSchema || !json.contains("scenes"))
+    if (json.is_discarded() || !json.is_object() || json.value("schema", Json()) != kSchema || !json.contains("scenes"))
         return Error{ErrorCode::badInput, "File '" + file.string() + "' is no results.json of schema " + std::to_string(kSchema) +
                                               "; run `sconce bench` again."};
     return json;

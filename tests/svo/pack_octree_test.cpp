@@ -1,5 +1,5 @@
 // The packed texture, read back by an own walk over the layout that svo/octree.h states, from lists made by hand.
-#include "svo/octree_plan.h"
+#include "svo/pack_octree.h"
 
 #include <algorithm>
 #include <array>
