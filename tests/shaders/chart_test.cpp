@@ -46,7 +46,8 @@ TEST(Chart, OctahedralMapInvertsAlsoOnEdgesAndCorners)
         const glm::vec2 uv = Pure<float>::octahedralFromDirection(d);
         EXPECT_GE(uv.x, 0.0f);
         EXPECT_LE(uv.y, 1.0f);
-        EXPECT_NEAR(glm::distance(Pure<float>::directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f) << d.x << " " << d.y << " " << d.z;
+        EXPECT_NEAR(glm::distance(Pure<float>::directionFromOctahedral(uv), glm::normalize(d)), 0.0f, 2e-6f)
+            << d.x << " " << d.y << " " << d.z;
     };
     for (int i = 0; i < 10000; ++i) check(randomDirection(random));
     for (float x : {-1.0f, -0.0f, 0.0f, 1.0f})

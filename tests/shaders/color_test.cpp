@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/pure.h"
 
 namespace sconce
 {
@@ -13,27 +13,22 @@ namespace
 
 using glm::vec3;
 
-struct Text
-{
-    FieldData field;
-    twin::LightFieldTwin<float> f{field, {}};
-};
+using Text = Pure<float>;
 
 TEST(Colour, RadianceRoundTripsWithinItsMantissa)
 {
-    Text text;
     std::mt19937 random(6);
     std::uniform_real_distribution<float> exponent(-10.0f, 15.0f);
     for (int i = 0; i < 10000; ++i)
     {
         const vec3 c(std::exp2(exponent(random)), std::exp2(exponent(random)), std::exp2(exponent(random)));
-        const vec3 r = text.f.unpackRadiance(text.f.packRadiance(c));
+        const vec3 r = Text::unpackRadiance(Text::packRadiance(c));
         EXPECT_NEAR(r.x, c.x, c.x / 120.0f);
         EXPECT_NEAR(r.y, c.y, c.y / 120.0f);
         EXPECT_NEAR(r.z, c.z, c.z / 60.0f);
     }
-    EXPECT_EQ(text.f.unpackRadiance(text.f.packRadiance(vec3(0.0f))), vec3(0.0f));
-    const vec3 extreme = text.f.unpackRadiance(text.f.packRadiance(vec3(1e9f, std::nanf(""), -3.0f)));
+    EXPECT_EQ(Text::unpackRadiance(Text::packRadiance(vec3(0.0f))), vec3(0.0f));
+    const vec3 extreme = Text::unpackRadiance(Text::packRadiance(vec3(1e9f, std::nanf(""), -3.0f)));
     EXPECT_GT(extreme.x, 60000.0f);
     EXPECT_TRUE(std::isfinite(extreme.x));
     EXPECT_EQ(extreme.y, 0.0f);
@@ -50,26 +45,24 @@ double valueOf(uint32_t bits, int mantissaBits)
 
 TEST(Colour, EveryWordUpTo64000HasItsValueAndComesBack)
 {
-    Text text;
     for (uint32_t bits = 0; valueOf(bits, 6) <= 64000.0; ++bits) // it saturates there
     {
-        const vec3 c = text.f.unpackRadiance(bits | bits << 11 | (bits >> 1) << 22);
+        const vec3 c = Text::unpackRadiance(bits | bits << 11 | (bits >> 1) << 22);
         EXPECT_EQ(c.x, float(valueOf(bits, 6))) << bits;
         EXPECT_EQ(c.y, c.x) << bits;
         EXPECT_EQ(c.z, float(valueOf(bits >> 1, 5))) << bits;
-        EXPECT_EQ(text.f.packRadiance(c), bits | bits << 11 | (bits >> 1) << 22) << bits;
+        EXPECT_EQ(Text::packRadiance(c), bits | bits << 11 | (bits >> 1) << 22) << bits;
     }
 }
 
 TEST(Colour, RoundsToTheNearestWord)
 {
-    Text text;
     std::mt19937 random(7);
     std::uniform_real_distribution<float> exponent(-13.0f, 15.5f);
     for (int i = 0; i < 10000; ++i)
     {
         const float value = std::exp2(exponent(random));
-        const uint32_t bits = text.f.packRadiance(vec3(value)) & 0x7ffu;
+        const uint32_t bits = Text::packRadiance(vec3(value)) & 0x7ffu;
         const double error = std::abs(valueOf(bits, 6) - double(value));
         // The half float that it goes through is rounded first: a tie may go the other way by its step, 1/16 of one of these.
         const double step = std::ldexp(1.0, std::ilogb(value) - 10);
@@ -81,13 +74,12 @@ TEST(Colour, RoundsToTheNearestWord)
 // A constant colour between two words, dithered over many texels, keeps its mean; rounded to nearest it would be off by up to 0.8 %.
 TEST(Colour, DitherKeepsTheMean)
 {
-    Text text;
     constexpr uint32_t kTexels = 4096;
     for (const float value : {0.011f, 0.1f, 1.004f, 1.0117f, 3.3f, 700.0f})
     {
         glm::dvec3 sum(0.0);
         for (uint32_t texel = 0; texel < kTexels; ++texel)
-            sum += glm::dvec3(text.f.unpackRadiance(text.f.packRadianceDithered(vec3(value), text.f.ditherOf(texel))));
+            sum += glm::dvec3(Text::unpackRadiance(Text::packRadianceDithered(vec3(value), Text::ditherOf(texel))));
         for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(sum[channel] / kTexels / value, 1.0, 1e-3) << value << ' ' << channel;
     }
 }

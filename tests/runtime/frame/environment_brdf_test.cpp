@@ -56,7 +56,7 @@ protected:
 
 TEST_F(EnvironmentBrdf, AgreesWithQuadrature)
 {
-    ASSERT_EQ(table.size(), size_t(kSide) * kSide);
+    ASSERT_EQ(table().size(), size_t(kSide) * kSide);
     for (const int row : {6, 9, 12, 16, 20, 24, 31})
         for (const int column : {2, 4, 8, 10, 16, 20, 31})
         {
