@@ -77,17 +77,6 @@ TEST(Settings, AStageLeavesOutWhatIsDecidedLater)
     }
 }
 
-// "field" for a knob that is on or off was left out of the sweep without a word.
-TEST(Settings, EveryValueOfASweepIsOneOfItsKnob)
-{
-    for (const Knob& knob : knobs())
-        for (const std::string_view value : knob.sweep)
-        {
-            PointSettings settings;
-            EXPECT_TRUE(knob.set(settings, value)) << knob.name << " " << value;
-        }
-}
-
 TEST(Settings, ChartIsTheOneThatTheMethodReads)
 {
     const auto chart = [](const char* method)
