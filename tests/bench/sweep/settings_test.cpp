@@ -38,11 +38,12 @@ TEST(Settings, WhatAMethodDoesNotHaveIsASentence)
     EXPECT_EQ(fault("ours", {{"colour", 1}}), "Method 'ours' has no knob 'colour'.");
     EXPECT_EQ(fault("ours", {{"low factor", 8}}), "Method 'ours' has no knob 'low factor'.");
     EXPECT_EQ(fault(kPathTracer, {{"ranked", 2}}), "Method 'path tracer' has no knob 'ranked'.");
-    EXPECT_EQ(fault("ours", {{"rays", "many"}}), "Knob 'rays' can't be \"many\".");
+    const std::string range = "; give 1 to 64 rays a pixel.";
+    EXPECT_EQ(fault("ours", {{"rays", "many"}}), "Knob 'rays' can't be \"many\"" + range);
     for (const Json& wrong : {Json(1.5), Json(-1), Json(""), Json("2 "), Json("+2"), Json(nullptr), Json(4294967296ull)})
-        EXPECT_EQ(fault("ours", {{"rays", wrong}}), "Knob 'rays' can't be " + wrong.dump() + ".");
+        EXPECT_EQ(fault("ours", {{"rays", wrong}}), "Knob 'rays' can't be " + wrong.dump() + range);
     for (const Json& wrong : {Json("yes"), Json(true), Json(1), Json("")})
-        EXPECT_EQ(fault("ours", {{"denoise", wrong}}), "Knob 'denoise' can't be " + wrong.dump() + ".");
+        EXPECT_EQ(fault("ours", {{"denoise", wrong}}), "Knob 'denoise' can't be " + wrong.dump() + "; give on, off.");
     EXPECT_NE(fault("ours", Json::array()), "");
 }
 

@@ -81,7 +81,7 @@ TEST_F(GpuTrace, RefusesKnobsOutOfRangeByName)
     quality.trace.ranked = 9;
     const auto field = makeLightField(gpu(), cornell().field, quality);
     ASSERT_FALSE(field);
-    EXPECT_NE(field.error().message.find("ranked 9"), std::string::npos);
+    EXPECT_NE(field.error().message.find("ranked is 9"), std::string::npos);
 }
 
 TEST_F(GpuTrace, NoRaysIsNoWork)
