@@ -187,7 +187,7 @@ TEST_F(SparseTest, RefusesOtherShares)
         settings.traceEvery = every;
         const auto frames = draw(wall(0.3f), settings, 1);
         ASSERT_FALSE(frames);
-        EXPECT_NE(frames.error().message.find("1, 2, 4, 8 or 16"), std::string::npos) << frames.error().message;
+        EXPECT_NE(frames.error().message.find("give 1, 2, 4, 8, 16"), std::string::npos) << frames.error().message;
     }
 }
 
