@@ -131,8 +131,7 @@ SCONCE_FN bool mayAskOn(SCONCE_INOUT(RayState) r)
 /// and before the surface. Else the first of the leaf's list at the point reached that wasn't tried, then of the lists a little further on; at
 /// its start a ray asks those of a list that stand before the surface it starts on first: to one behind a thin sheet the start would look like
 /// a place on its own side.
-/// One search for both, since what is written twice is in the program twice: a trace took 1.14 times
-/// its former time with two, 1.08 with one.
+/// One search for both, since what is written twice is in the program twice.
 SCONCE_FN uint searchLeaves(SCONCE_INOUT(RayState) r, bool opinion)
 {
     vec3 own = r.visit.relative + r.t * r.ray.direction;
