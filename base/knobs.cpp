@@ -2,22 +2,24 @@
 
 #include <cstdio>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
 std::string knobText(uint32_t value)
 {
-    return value == knobs::kMost32 ? "2^32-1" : std::to_string(value);
+    return value == knobs::kMost32 ? "2^32-1" : fmt::to_string(value);
 }
 
 std::string knobText(int value)
 {
-    return std::to_string(value);
+    return fmt::to_string(value);
 }
 
 std::string knobText(uint64_t value)
 {
-    return value == knobs::kMost64 ? "2^64-1" : std::to_string(value);
+    return value == knobs::kMost64 ? "2^64-1" : fmt::to_string(value);
 }
 
 std::string knobText(double value)
@@ -54,7 +56,7 @@ namespace knob_words
 std::string range(const std::vector<std::string>& only, const std::string& least, const std::string& most, std::string_view unit,
                   std::string_view also)
 {
-    std::string text = most.empty() ? least : least + " to " + most;
+    std::string text = most.empty() ? least : fmt::format("{} to {}", least, most);
     if (most.empty() && !least.empty() && !least.starts_with("above")) text += " or more";
     if (!only.empty())
     {
@@ -68,7 +70,7 @@ std::string range(const std::vector<std::string>& only, const std::string& least
 
 std::string fault(std::string_view name, const std::string& value, const std::string& range)
 {
-    return std::string(name) + " is " + (value.empty() ? "''" : value) + "; give " + range;
+    return fmt::format("{} is {}; give {}", name, value.empty() ? "''" : value, range);
 }
 
 } // namespace knob_words

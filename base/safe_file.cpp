@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
@@ -41,7 +43,7 @@ Result<SafeFile> SafeFile::create(const std::filesystem::path& target)
     file.target = target;
     std::error_code ignored;
     if (target.filename().empty() || std::filesystem::is_directory(target, ignored))
-        return Error{ErrorCode::fileError, "Cannot write '" + target.string() + "': it names a folder; give a file name."};
+        return Error{ErrorCode::fileError, fmt::format("Cannot write '{}': it names a folder; give a file name.", target.string())};
     std::string name = (folderOf(target) / ".").string();
     name += target.filename().string();
     name += ".XXXXXX";
@@ -49,8 +51,9 @@ Result<SafeFile> SafeFile::create(const std::filesystem::path& target)
     if (file.descriptor < 0)
     {
         const int reason = errno;
-        return Error{ErrorCode::fileError, "Cannot write '" + target.string() + "': " + std::strerror(reason) + " in folder '" +
-                                               folderOf(target).string() + "'; choose a folder that exists and can be written."};
+        return Error{ErrorCode::fileError,
+                     fmt::format("Cannot write '{}': {} in folder '{}'; choose a folder that exists and can be written.", target.string(),
+                                 std::strerror(reason), folderOf(target).string())};
     }
     file.temporary = name;
     // mkstemp's mode is 0600; give the file what the process's mask would have given it.
@@ -74,8 +77,10 @@ SafeFile::~SafeFile()
 Status SafeFile::failure(std::string_view what) const
 {
     const int reason = errno;
-    return Error{ErrorCode::fileError, "Writing '" + target.string() + "' failed at " + std::string(what) + ": " + std::strerror(reason) +
-                                           "; what stood there before is unchanged. Free some space or choose another folder."};
+    return Error{
+        ErrorCode::fileError,
+        fmt::format("Writing '{}' failed at {}: {}; what stood there before is unchanged. Free some space or choose another folder.",
+                    target.string(), what, std::strerror(reason))};
 }
 
 Status SafeFile::append(std::span<const std::byte> bytes)

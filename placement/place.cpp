@@ -178,8 +178,8 @@ std::string faultOfPins(const LegalSpace& legal, float clearance)
         if (!legal.space.contains(p))
             return probe + "lies in solid or outside the reachable space; move it, or name its space by --inside.";
         if (distance < clearance)
-            return probe + fmt::format("is {} m from a surface, nearer than the clearance of {} m; move it or lower the clearance.",
-                                       distance, clearance);
+            return fmt::format("{}is {} m from a surface, nearer than the clearance of {} m; move it or lower the clearance.", probe,
+                               distance, clearance);
         if (!legal.allows(p, clearance)) return probe + "lies in a forbidden place or behind a thin wall; move it.";
     }
     return {};

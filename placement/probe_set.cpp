@@ -50,7 +50,7 @@ bool readVector(const Json& json, glm::vec3& value)
 
 Error badFile(const std::filesystem::path& file, const std::string& what)
 {
-    return Error{ErrorCode::badInput, "Probe file '" + file.string() + "': " + what + "."};
+    return Error{ErrorCode::badInput, fmt::format("Probe file '{}': {}.", file.string(), what)};
 }
 
 std::string noPosition(size_t index)
@@ -84,12 +84,12 @@ Result<Json> readProbeFile(const std::filesystem::path& file)
     std::error_code fault;
     const uintmax_t bytes = std::filesystem::file_size(file, fault);
     std::ifstream in(file, std::ios::binary);
-    if (fault || !in) return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read; check the path."};
+    if (fault || !in) return Error{ErrorCode::fileError, fmt::format("Probe file '{}' could not be read; check the path.", file.string())};
     // Before it is read: a wrong path may name a file of any size.
     if (bytes > kMostBytes) return badFile(file, fmt::format("it has {} bytes, more than any set of {} probes needs", bytes, kMostProbes));
     std::string text(static_cast<size_t>(bytes), '\0');
     if (!in.read(text.data(), std::streamsize(text.size())))
-        return Error{ErrorCode::fileError, "Probe file '" + file.string() + "' could not be read whole."};
+        return Error{ErrorCode::fileError, fmt::format("Probe file '{}' could not be read whole.", file.string())};
 
     Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
     if (json.is_discarded()) return badFile(file, "it is not valid JSON; write it again with sconce place");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
@@ -14,8 +16,9 @@ Result<Visibility> Visibility::build(const Scene& scene)
         if (rays->presence()[triangle] != Presence::absent)
             for (int corner = 0; corner < 3; ++corner) bounds.add(scene.positions[scene.triangles[triangle][corner]]);
     if (bounds.empty() || !(bounds.diagonal() > 0.0f))
-        return Error{ErrorCode::badInput, "Scene '" + scene.name + "' has " + std::to_string(scene.triangles.size()) +
-                                              " triangles and none with a visible surface; probes need something to see."};
+        return Error{ErrorCode::badInput,
+                     fmt::format("Scene '{}' has {} triangles and none with a visible surface; probes need something to see.", scene.name,
+                                 scene.triangles.size())};
     const vec3 farthest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
     // The rounding of positions grows with their distance from the origin, not with the scene's size alone.
     const float epsilon = 1e-5f * (bounds.diagonal() + 0.1f * std::max({farthest.x, farthest.y, farthest.z}));

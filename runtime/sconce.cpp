@@ -1,5 +1,7 @@
 #include "runtime/sconce.h"
 
+#include <fmt/format.h>
+
 #include "runtime/bake/bake.h"
 #include "runtime/field/light_field.h"
 #include "runtime/field/light_field_file.h"
@@ -15,11 +17,11 @@ Version libraryVersion()
 
 Result<Device> Device::create(const HostVulkan& host, Version header)
 {
-    const auto text = [](const Version& v)
-    { return std::to_string(v.major) + "." + std::to_string(v.minor) + "." + std::to_string(v.patch); };
+    const auto text = [](const Version& v) { return fmt::format("{}.{}.{}", v.major, v.minor, v.patch); };
     if (header.major != libraryVersion().major || header.minor != libraryVersion().minor)
-        return Error{ErrorCode::badArgument, "sconce.h is of version " + text(header) + " and the linked library of " +
-                                                 text(libraryVersion()) + "; compile and link against the same"};
+        return Error{ErrorCode::badArgument,
+                     fmt::format("sconce.h is of version {} and the linked library of {}; compile and link against the same", text(header),
+                                 text(libraryVersion()))};
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
     return Device(std::move(*gpu));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "scene/builtin_town.h"
 #include "scene/mesh_builder.h"
 
@@ -220,7 +222,7 @@ Result<Scene> makeBuiltinScene(std::string_view name)
     if (name == "town") return makeTown();
     std::string known;
     for (const BuiltinScene& scene : builtinScenes()) known += (known.empty() ? "" : ", ") + scene.name;
-    return Error{ErrorCode::badArgument, "There is no built-in scene named '" + std::string(name) + "'; use one of " + known + "."};
+    return Error{ErrorCode::badArgument, fmt::format("There is no built-in scene named '{}'; use one of {}.", name, known)};
 }
 
 } // namespace sconce

@@ -2,14 +2,16 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
 std::string cameraFault(const Camera& camera)
 {
-    const std::string name = camera.name.empty() ? "The camera" : "The camera '" + camera.name + "'";
+    const std::string name = camera.name.empty() ? "The camera" : fmt::format("The camera '{}'", camera.name);
     if (!(camera.verticalFov > 0.0f && camera.verticalFov < 3.1f))
-        return name + " has a vertical field of view of " + std::to_string(camera.verticalFov) + " radians; choose above 0 and below 3.1";
+        return fmt::format("{} has a vertical field of view of {:f} radians; choose above 0 and below 3.1", name, camera.verticalFov);
     if (!std::isfinite(glm::length(camera.eye))) return name + " has an eye that is not finite; give its position in metres";
     const float area = glm::length(glm::cross(camera.forward, camera.up));
     if (!(area > 1e-6f) || !std::isfinite(area))

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
@@ -21,17 +23,17 @@ TownMaterials makeTownMaterials(MeshBuilder& mesh)
     m.screen = mesh.material("screen", vec3(0.02f), 0.05f);
     m.soil = mesh.material("soil", vec3(0.10f, 0.06f, 0.035f));
     const vec3 cloths[4] = {{0.45f, 0.07f, 0.06f}, {0.07f, 0.17f, 0.36f}, {0.12f, 0.29f, 0.14f}, {0.55f, 0.36f, 0.08f}};
-    for (int i = 0; i < 4; ++i) m.cloth[i] = mesh.material("cloth " + std::to_string(i), cloths[i], 0.95f);
+    for (int i = 0; i < 4; ++i) m.cloth[i] = mesh.material(fmt::format("cloth {}", i), cloths[i], 0.95f);
     const vec3 bindings[6] = {{0.40f, 0.05f, 0.05f}, {0.06f, 0.10f, 0.30f}, {0.06f, 0.22f, 0.10f},
                               {0.55f, 0.48f, 0.30f}, {0.12f, 0.11f, 0.10f}, {0.40f, 0.20f, 0.06f}};
-    for (int i = 0; i < 6; ++i) m.books[i] = mesh.material("book " + std::to_string(i), bindings[i], 0.6f);
+    for (int i = 0; i < 6; ++i) m.books[i] = mesh.material(fmt::format("book {}", i), bindings[i], 0.6f);
     const vec3 greens[3] = {{0.10f, 0.26f, 0.06f}, {0.17f, 0.30f, 0.07f}, {0.07f, 0.19f, 0.08f}};
-    for (int i = 0; i < 3; ++i) m.leaves[i] = mesh.material("leaves " + std::to_string(i), greens[i], 0.9f);
+    for (int i = 0; i < 3; ++i) m.leaves[i] = mesh.material(fmt::format("leaves {}", i), greens[i], 0.9f);
     const vec3 facades[6] = {{0.72f, 0.53f, 0.30f}, {0.64f, 0.33f, 0.22f}, {0.70f, 0.66f, 0.56f},
                              {0.42f, 0.52f, 0.56f}, {0.62f, 0.44f, 0.40f}, {0.50f, 0.55f, 0.38f}};
-    for (int i = 0; i < 6; ++i) m.walls[i] = mesh.material("facade " + std::to_string(i), facades[i], 0.95f);
+    for (int i = 0; i < 6; ++i) m.walls[i] = mesh.material(fmt::format("facade {}", i), facades[i], 0.95f);
     const vec3 paints[4] = {{0.78f, 0.75f, 0.68f}, {0.70f, 0.60f, 0.46f}, {0.52f, 0.62f, 0.66f}, {0.66f, 0.50f, 0.46f}};
-    for (int i = 0; i < 4; ++i) m.paints[i] = mesh.material("paint " + std::to_string(i), paints[i], 0.9f);
+    for (int i = 0; i < 4; ++i) m.paints[i] = mesh.material(fmt::format("paint {}", i), paints[i], 0.9f);
     m.roofTile = mesh.material("roof tile", vec3(0.44f, 0.16f, 0.09f), 0.85f);
     m.asphalt = mesh.material("asphalt", vec3(0.11f, 0.11f, 0.115f), 0.85f);
     m.paving = mesh.material("paving", vec3(0.42f, 0.40f, 0.37f), 0.8f);

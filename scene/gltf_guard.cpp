@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf_layout.h"
@@ -83,23 +84,20 @@ struct Container
 Result<Container> splitGlb(const Bytes& bytes, const std::string& name)
 {
     constexpr uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942; // "JSON", "BIN\0"
-    if (bytes.size() < 20)
-        return bad(name + " has " + std::to_string(bytes.size()) + " bytes, too few for a GLB; copy or export it again.");
+    if (bytes.size() < 20) return bad(fmt::format("{} has {} bytes, too few for a GLB; copy or export it again.", name, bytes.size()));
     const uint64_t version = littleEndian(bytes, 4), length = littleEndian(bytes, 8);
-    if (version != 2) return bad(name + " is GLB version " + std::to_string(version) + "; convert it to glTF 2.0.");
+    if (version != 2) return bad(fmt::format("{} is GLB version {}; convert it to glTF 2.0.", name, version));
     if (length > bytes.size())
-        return bad(name + " says it has " + std::to_string(length) + " bytes but has " + std::to_string(bytes.size()) +
-                   "; copy or export it again.");
+        return bad(fmt::format("{} says it has {} bytes but has {}; copy or export it again.", name, length, bytes.size()));
     Container container;
     for (uint64_t at = 12; at + 8 <= length;)
     {
         const uint64_t size = littleEndian(bytes, at), type = littleEndian(bytes, at + 4);
         if (size > length - at - 8)
-            return bad(name + " has a chunk at byte " + std::to_string(at) + " that runs past the end; copy or export it again.");
+            return bad(fmt::format("{} has a chunk at byte {} that runs past the end; copy or export it again.", name, at));
         const auto begin = bytes.begin() + int64_t(at + 8);
         if (at == 12 && type != kJson) return bad(name + " doesn't begin with a JSON chunk; export it again.");
-        if (at == 12 && size > GltfLimits::jsonBytes)
-            return bad(name + " has " + std::to_string(size) + " bytes of JSON; the limit is 256 MiB.");
+        if (at == 12 && size > GltfLimits::jsonBytes) return bad(fmt::format("{} has {} bytes of JSON; the limit is 256 MiB.", name, size));
         // All chunks but the JSON and the first binary one are skipped, as glTF 2.0 section 4.4.3 asks of unknown types.
         if (at == 12)
             container.json.assign(begin, begin + int64_t(size));
@@ -122,8 +120,8 @@ Status checkRequired(const Json& gltf, const std::string& name)
         const std::string extension = entry.is_string() ? entry.get<std::string>() : entry.dump().substr(0, 40);
         if (std::find(std::begin(known), std::end(known), extension) != std::end(known)) continue;
         const bool compressed = extension.ends_with("_compression");
-        return bad(name + " requires the extension " + extension + ", which isn't supported; export it " +
-                   (compressed ? "without mesh compression." : "without that extension."));
+        return bad(fmt::format("{} requires the extension {}, which isn't supported; export it {}", name, extension,
+                               compressed ? "without mesh compression." : "without that extension."));
     }
     return success();
 }
@@ -136,14 +134,14 @@ Status checkShape(const Json& gltf, const std::string& name)
         !gltf["asset"]["version"].is_string())
         return bad(name + " has no asset version; it is no glTF 2.0 file.");
     if (const std::string version = gltf["asset"]["version"]; !version.starts_with("2."))
-        return bad(name + " is glTF version '" + version.substr(0, 20) + "'; convert it to 2.0.");
+        return bad(fmt::format("{} is glTF version '{}'; convert it to 2.0.", name, version.substr(0, 20)));
     for (const char* list : {"buffers", "bufferViews", "accessors", "images", "textures", "samplers", "materials", "meshes", "nodes",
                              "scenes", "cameras", "skins", "animations"})
     {
         if (!gltf.contains(list)) continue;
-        if (!gltf[list].is_array()) return bad(name + " has '" + list + "' that is no array; export it again.");
+        if (!gltf[list].is_array()) return bad(fmt::format("{} has '{}' that is no array; export it again.", name, list));
         for (const Json& entry : gltf[list])
-            if (!entry.is_object()) return bad(name + " has an entry of '" + list + "' that is no object; export it again.");
+            if (!entry.is_object()) return bad(fmt::format("{} has an entry of '{}' that is no object; export it again.", name, list));
     }
     return success();
 }
@@ -184,7 +182,7 @@ Status readBuffers(const Json& gltf, std::optional<Bytes> binary, GuardedGltf& o
     for (size_t i = 0; i < gltf["buffers"].size(); ++i)
     {
         const Json& buffer = gltf["buffers"][i];
-        const std::string what = "Buffer " + std::to_string(i);
+        const std::string what = fmt::format("Buffer {}", i);
         if (!buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned())
             return bad(what + " has no byteLength that is a whole number; export the file again.");
         const uint64_t length = buffer["byteLength"];
@@ -206,8 +204,8 @@ Status readBuffers(const Json& gltf, std::optional<Bytes> binary, GuardedGltf& o
         else if (length > 0)
             return bad(what + " has neither a URI nor a binary chunk; export the file again.");
         if (bytes.size() < length)
-            return bad(what + " has " + std::to_string(bytes.size()) + " bytes but should have " + std::to_string(length) +
-                       "; the file is incomplete, copy or export it again.");
+            return bad(fmt::format("{} has {} bytes but should have {}; the file is incomplete, copy or export it again.", what,
+                                   bytes.size(), length));
         bytes.resize(length); // GLB chunks are padded
         if ((total += length) > GltfLimits::totalBytes) return bad("The buffers hold more than 6 GiB; split the scene.");
         out.buffers.push_back(std::move(bytes));
@@ -223,7 +221,7 @@ Status listImages(const Json& gltf, GuardedGltf& out)
     {
         const Json& entry = gltf["images"][i];
         GltfImage image;
-        image.name = "image " + std::to_string(i);
+        image.name = fmt::format("image {}", i);
         if (entry.contains("uri") && entry["uri"].is_string())
         {
             image.uri = entry["uri"];
@@ -232,7 +230,7 @@ Status listImages(const Json& gltf, GuardedGltf& out)
         else if (entry.contains("bufferView") && entry["bufferView"].is_number_unsigned() && entry["bufferView"].get<uint64_t>() < views)
             image.bufferView = int(entry["bufferView"].get<uint64_t>());
         else
-            return bad("Image " + std::to_string(i) + " has neither a URI nor a buffer view of this file; export the file again.");
+            return bad(fmt::format("Image {} has neither a URI nor a buffer view of this file; export the file again.", i));
         if (entry.contains("name") && entry["name"].is_string()) image.name = entry["name"].get<std::string>().substr(0, 200);
         out.images.push_back(std::move(image));
     }
@@ -245,16 +243,17 @@ Result<Bytes> readRegularFile(const fs::path& file, const std::string& what)
 {
     std::error_code problem;
     const fs::file_status status = fs::status(file, problem);
-    if (!fs::exists(status)) return unreadable(what + " can't be read: " + file.string() + " doesn't exist; check the path.");
-    if (!fs::is_regular_file(status)) return unreadable(what + " can't be read: " + file.string() + " is no regular file; name a file.");
+    if (!fs::exists(status)) return unreadable(fmt::format("{} can't be read: {} doesn't exist; check the path.", what, file.string()));
+    if (!fs::is_regular_file(status))
+        return unreadable(fmt::format("{} can't be read: {} is no regular file; name a file.", what, file.string()));
     const uint64_t size = fs::file_size(file, problem);
-    if (problem) return unreadable(what + " can't be read: " + file.string() + ": " + problem.message() + ".");
+    if (problem) return unreadable(fmt::format("{} can't be read: {}: {}.", what, file.string(), problem.message()));
     if (size > GltfLimits::fileBytes)
-        return bad(what + " is " + file.string() + " of " + std::to_string(size) + " bytes; the limit is 2 GiB, split it.");
+        return bad(fmt::format("{} is {} of {} bytes; the limit is 2 GiB, split it.", what, file.string(), size));
     Bytes bytes(size);
     std::ifstream in(file, std::ios::binary);
     if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)) && size > 0)
-        return unreadable(what + " can't be read: " + file.string() + " refused; check its permissions.");
+        return unreadable(fmt::format("{} can't be read: {} refused; check its permissions.", what, file.string()));
     return bytes;
 }
 
@@ -284,22 +283,22 @@ Result<Bytes> SceneFolder::read(std::string_view uri, const std::string& what) c
     if (uri.starts_with("data:")) return decodeDataUri(uri, what);
     const auto decoded = percentDecode(uri);
     if (!decoded) return decoded.error();
-    const std::string shown = what + " names '" + std::string(uri.substr(0, 200)) + "', ";
+    const std::string shown = fmt::format("{} names '{}', ", what, uri.substr(0, 200));
     const std::string remedy = "; only files in the scene's own folder are read, copy it there.";
     if (decoded->empty()) return bad(shown + "which is empty; export the file again.");
     if (decoded->front() == '/' || decoded->find('\\') != std::string::npos || decoded->find(':') != std::string::npos)
-        return bad(shown + "an absolute path, a backslash or another scheme" + remedy);
+        return bad(fmt::format("{}an absolute path, a backslash or another scheme{}", shown, remedy));
     const fs::path relative(*decoded);
     // As written first, then as resolved: '..' is refused though it might lead back, a link by where it ends.
     for (const fs::path& part : relative)
-        if (part == "..") return bad(shown + "which leads out of the folder" + remedy);
+        if (part == "..") return bad(fmt::format("{}which leads out of the folder{}", shown, remedy));
     std::error_code problem;
     const fs::path base = fs::canonical(root, problem);
-    if (problem) return unreadable(what + " can't be read: the folder " + root.string() + " is not there.");
+    if (problem) return unreadable(fmt::format("{} can't be read: the folder {} is not there.", what, root.string()));
     const fs::path target = fs::canonical(base / relative, problem); // resolves symbolic links
     if (problem) return unreadable(shown + "which can't be found; copy it next to the scene.");
     if (std::mismatch(base.begin(), base.end(), target.begin(), target.end()).first != base.end())
-        return bad(shown + "a link that leads out of the folder" + remedy);
+        return bad(fmt::format("{}a link that leads out of the folder{}", shown, remedy));
     return readRegularFile(target, what);
 }
 
@@ -323,8 +322,8 @@ Status checkJsonDepth(std::string_view json)
         {
             // Counted by hand: the parsers recurse, and would overflow the stack before they could refuse.
             if (++depth > GltfLimits::jsonDepth)
-                return bad("The JSON is nested deeper than " + std::to_string(GltfLimits::jsonDepth) + " levels at byte " +
-                           std::to_string(i) + "; remove the extras or export the file again.");
+                return bad(fmt::format("The JSON is nested deeper than {} levels at byte {}; remove the extras or export the file again.",
+                                       GltfLimits::jsonDepth, i));
         }
         else if (c == '}' || c == ']')
             --depth;
@@ -334,7 +333,7 @@ Status checkJsonDepth(std::string_view json)
 
 Result<GuardedGltf> openGltf(const fs::path& file)
 {
-    const std::string name = "'" + file.filename().string() + "'";
+    const std::string name = fmt::format("'{}'", file.filename().string());
     auto bytes = readRegularFile(file, "The scene");
     if (!bytes) return bytes.error();
     Container container;
@@ -347,11 +346,12 @@ Result<GuardedGltf> openGltf(const fs::path& file)
     else
     {
         if (bytes->size() > GltfLimits::jsonBytes)
-            return bad(name + " has " + std::to_string(bytes->size()) + " bytes of JSON; the limit is 256 MiB.");
+            return bad(fmt::format("{} has {} bytes of JSON; the limit is 256 MiB.", name, bytes->size()));
         container.json.assign(bytes->begin(), bytes->end());
     }
     *bytes = Bytes(); // buffers of GB size need not be there twice
-    if (Status status = checkJsonDepth(container.json); !status) return Error{status.error().code, name + ": " + status.error().message};
+    if (Status status = checkJsonDepth(container.json); !status)
+        return Error{status.error().code, fmt::format("{}: {}", name, status.error().message)};
 
     GuardedGltf out;
     out.folder = SceneFolder(file.has_parent_path() ? file.parent_path() : fs::path("."));
@@ -366,8 +366,10 @@ Result<GuardedGltf> openGltf(const fs::path& file)
         if (Status status = readBuffers(gltf, std::move(container.binary), out); !status) return status.error();
         std::vector<uint64_t> sizes;
         for (const Bytes& buffer : out.buffers) sizes.push_back(buffer.size());
-        if (Status status = checkLayout(gltf, sizes); !status) return Error{status.error().code, name + ": " + status.error().message};
-        if (Status status = listImages(gltf, out); !status) return Error{status.error().code, name + ": " + status.error().message};
+        if (Status status = checkLayout(gltf, sizes); !status)
+            return Error{status.error().code, fmt::format("{}: {}", name, status.error().message)};
+        if (Status status = listImages(gltf, out); !status)
+            return Error{status.error().code, fmt::format("{}: {}", name, status.error().message)};
         // The parser sees JSON that names no data: what it could be led to open has been read, and checked, here.
         gltf.erase("buffers");
         gltf.erase("images");
@@ -375,7 +377,8 @@ Result<GuardedGltf> openGltf(const fs::path& file)
     }
     catch (const Json::exception& problem) // the parser's and the accessors' own; with its place in the text
     {
-        return bad(name + " holds JSON that can't be understood (" + std::string(problem.what()).substr(0, 160) + "); export it again.");
+        return bad(
+            fmt::format("{} holds JSON that can't be understood ({}); export it again.", name, std::string(problem.what()).substr(0, 160)));
     }
     return out;
 }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace sconce
@@ -26,11 +27,11 @@ Result<uint64_t> number(const Json& object, const char* key, const std::string& 
     if (it == object.end())
     {
         if (missing) return *missing;
-        return bad(owner + " has no " + key + "; the file is damaged, export it again.");
+        return bad(fmt::format("{} has no {}; the file is damaged, export it again.", owner, key));
     }
     if (!it->is_number_unsigned() || it->get<uint64_t>() > kMaxNumber)
-        return bad(owner + " has " + key + " " + it->dump().substr(0, 40) + "; it must be an integer from 0 to " +
-                   std::to_string(kMaxNumber) + ", export the file again.");
+        return bad(fmt::format("{} has {} {}; it must be an integer from 0 to {}, export the file again.", owner, key,
+                               it->dump().substr(0, 40), kMaxNumber));
     return it->get<uint64_t>();
 }
 
@@ -63,25 +64,24 @@ public:
         const Json& list = gltf.contains("bufferViews") ? gltf["bufferViews"] : empty;
         for (size_t i = 0; i < list.size(); ++i)
         {
-            const std::string owner = "Buffer view " + std::to_string(i);
+            const std::string owner = fmt::format("Buffer view {}", i);
             const uint64_t zero = 0;
             const auto buffer = number(list[i], "buffer", owner, nullptr), offset = number(list[i], "byteOffset", owner, &zero);
             const auto length = number(list[i], "byteLength", owner, nullptr), stride = number(list[i], "byteStride", owner, &zero);
             for (const auto* value : {&buffer, &offset, &length, &stride})
                 if (!*value) return value->error();
             if (*buffer >= bufferBytes.size())
-                return bad(owner + " uses buffer " + std::to_string(*buffer) + " of " + std::to_string(bufferBytes.size()) +
-                           "; export the file again.");
+                return bad(fmt::format("{} uses buffer {} of {}; export the file again.", owner, *buffer, bufferBytes.size()));
             // glTF 2.0's own limits; a stride of 0 is 'not given', and elements are then tightly packed.
             if (*stride > 252 || *stride % 4 != 0)
-                return bad(owner + " has byteStride " + std::to_string(*stride) + "; it must be a multiple of 4 up to 252.");
+                return bad(fmt::format("{} has byteStride {}; it must be a multiple of 4 up to 252.", owner, *stride));
             // A compression fallback without data passes here: only an accessor that reads it is a fault.
             const bool compressed = list[i].contains("extensions") && (list[i]["extensions"].contains("EXT_meshopt_compression") ||
                                                                        list[i]["extensions"].contains("KHR_meshopt_compression"));
             const uint64_t available = bufferBytes[*buffer];
             if (*offset + *length > available && !(compressed && available == 0))
-                return bad(owner + " ends at byte " + std::to_string(*offset + *length) + " of a buffer of " + std::to_string(available) +
-                           " bytes; the file is damaged, export it again.");
+                return bad(fmt::format("{} ends at byte {} of a buffer of {} bytes; the file is damaged, export it again.", owner,
+                                       *offset + *length, available));
             seen.push_back({compressed && available == 0 ? kNoData : *length, *stride});
         }
         return success();
@@ -92,7 +92,7 @@ public:
         if (!gltf.contains("accessors")) return success();
         const Json& list = gltf["accessors"];
         for (size_t i = 0; i < list.size(); ++i)
-            if (Status status = accessor(list[i], "Accessor " + std::to_string(i)); !status) return status;
+            if (Status status = accessor(list[i], fmt::format("Accessor {}", i)); !status) return status;
         return success();
     }
 
@@ -102,20 +102,18 @@ private:
     // Do `count` elements of `size` bytes fit into the view from `offset` on? Alignment isn't asked for: they are read byte by byte.
     Status fits(uint64_t view, uint64_t offset, uint64_t count, uint64_t size, bool strided, const std::string& owner) const
     {
-        if (view >= seen.size())
-            return bad(owner + " uses buffer view " + std::to_string(view) + " of " + std::to_string(seen.size()) +
-                       "; export the file again.");
+        if (view >= seen.size()) return bad(fmt::format("{} uses buffer view {} of {}; export the file again.", owner, view, seen.size()));
         if (seen[view].bytes == kNoData)
             return bad(owner + " holds compressed data (meshopt) without an uncompressed fallback, which isn't supported; "
                                "export the file without mesh compression.");
         const uint64_t stride = strided && seen[view].stride != 0 ? seen[view].stride : size;
         if (stride < size)
-            return bad(owner + " has elements of " + std::to_string(size) + " bytes, more than the stride of " + std::to_string(stride) +
-                       " of its buffer view; export the file again.");
+            return bad(fmt::format("{} has elements of {} bytes, more than the stride of {} of its buffer view; export the file again.",
+                                   owner, size, stride));
         const uint64_t end = count == 0 ? offset : offset + (count - 1) * stride + size; // below 2^40 * 252 + ..., no overflow
         if (end > seen[view].bytes)
-            return bad(owner + " ends at byte " + std::to_string(end) + " of a buffer view of " + std::to_string(seen[view].bytes) +
-                       " bytes; the file is damaged, export it again.");
+            return bad(fmt::format("{} ends at byte {} of a buffer view of {} bytes; the file is damaged, export it again.", owner, end,
+                                   seen[view].bytes));
         return success();
     }
 
@@ -128,10 +126,9 @@ private:
             if (!*value) return value->error();
         const uint64_t component = componentBytes(*type), components = typeComponents(entry);
         if (component == 0)
-            return bad(owner + " has component type " + std::to_string(*type) + ", which glTF 2.0 doesn't have; export the file again.");
+            return bad(fmt::format("{} has component type {}, which glTF 2.0 doesn't have; export the file again.", owner, *type));
         if (components == 0) return bad(owner + " has an unknown type; glTF 2.0 has SCALAR, VEC2 to VEC4 and MAT2 to MAT4.");
-        if (*count > 0xffffffffull)
-            return bad(owner + " has " + std::to_string(*count) + " elements; the limit is 2^32 - 1, split the mesh.");
+        if (*count > 0xffffffffull) return bad(fmt::format("{} has {} elements; the limit is 2^32 - 1, split the mesh.", owner, *count));
         if (entry.contains("bufferView"))
         {
             const auto view = number(entry, "bufferView", owner, nullptr);
@@ -153,11 +150,9 @@ private:
         const auto valueView = number(values, "bufferView", owner, nullptr), valueOffset = number(values, "byteOffset", owner, &zero);
         for (const auto* value : {&count, &type, &indexView, &indexOffset, &valueView, &valueOffset})
             if (!*value) return value->error();
-        if (*count > elements)
-            return bad(owner + " replaces " + std::to_string(*count) + " of " + std::to_string(elements) +
-                       " elements; export the file again.");
+        if (*count > elements) return bad(fmt::format("{} replaces {} of {} elements; export the file again.", owner, *count, elements));
         if (*type != 5121 && *type != 5123 && *type != 5125)
-            return bad(owner + " has indices of component type " + std::to_string(*type) + "; they must be unsigned.");
+            return bad(fmt::format("{} has indices of component type {}; they must be unsigned.", owner, *type));
         const uint64_t indexBytes = componentBytes(*type);
         if (Status status = fits(*indexView, *indexOffset, *count, indexBytes, false, owner); !status) return status;
         return fits(*valueView, *valueOffset, *count, size, false, owner);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include <fmt/format.h>
 #include <jpeglib.h>
 #include <png.h>
 #include <webp/decode.h>
@@ -18,17 +19,17 @@ using Bytes = std::span<const uint8_t>;
 
 Error imageError(std::string_view name, const std::string& what)
 {
-    return {ErrorCode::badInput, "Image '" + std::string(name) + "' " + what};
+    return {ErrorCode::badInput, fmt::format("Image '{}' {}", name, what)};
 }
 
 // Empty when the size is acceptable.
 std::string sizeFault(uint64_t width, uint64_t height)
 {
-    const std::string size = std::to_string(width) + "x" + std::to_string(height);
-    if (width == 0 || height == 0) return "is " + size + " pixels; give it a size.";
+    const std::string size = fmt::format("{}x{}", width, height);
+    if (width == 0 || height == 0) return fmt::format("is {} pixels; give it a size.", size);
     if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels)
-        return "is " + size + " pixels; the limit is " + std::to_string(kMaxImageSide) + " a side and " +
-               std::to_string(kMaxImagePixels >> 20) + " Mpixel, scale it down.";
+        return fmt::format("is {} pixels; the limit is {} a side and {} Mpixel, scale it down.", size, kMaxImageSide,
+                           kMaxImagePixels >> 20);
     return {};
 }
 
@@ -60,7 +61,7 @@ struct PngReader
     }
     static void fail(png_structp png, png_const_charp message)
     {
-        static_cast<PngReader*>(png_get_error_ptr(png))->fault = "can't be decoded as PNG (" + std::string(message) + "); export it again.";
+        static_cast<PngReader*>(png_get_error_ptr(png))->fault = fmt::format("can't be decoded as PNG ({}); export it again.", message);
         // The fault is kept first, outside of what the jump leaves: it must not return to libpng.
         png_longjmp(png, 1);
     }
@@ -118,7 +119,7 @@ struct JpegReader
         char message[JMSG_LENGTH_MAX];
         common->err->format_message(common, message);
         auto& self = *static_cast<JpegReader*>(common->client_data);
-        self.fault = "can't be decoded as JPEG (" + std::string(message) + "); export it again.";
+        self.fault = fmt::format("can't be decoded as JPEG ({}); export it again.", message);
         std::longjmp(self.escape, 1);
     }
     // Warnings mean damaged data (a truncated file is only a warning to libjpeg): what it would make up is not what the author saw.

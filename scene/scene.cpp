@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/numbers.h"
 
 namespace sconce
@@ -84,7 +86,7 @@ bool inUnitRange(float v)
 std::string textureFault(const Scene& scene, const TextureRef& texture)
 {
     if (texture.image < -1 || texture.image >= int(scene.images.size()))
-        return "reads image " + std::to_string(texture.image) + " of " + std::to_string(scene.images.size()) + "; use -1 for no texture";
+        return fmt::format("reads image {} of {}; use -1 for no texture", texture.image, scene.images.size());
     if (texture.wrapU > Wrap::mirror || texture.wrapV > Wrap::mirror) return "has an unknown wrap mode; use repeat, clamp or mirror";
     if (!finite(texture.uvScaleRotate[0]) || !finite(texture.uvScaleRotate[1]) || !finite(texture.uvOffset))
         return "has a texture transform that is not finite; give finite numbers";
@@ -95,8 +97,8 @@ std::string materialFault(const Scene& scene, const Material& material)
 {
     if (!nonNegative(vec3(material.baseColor)) || !inUnitRange(material.baseColor.a))
         return "has a base colour that is not finite, negative or has alpha outside [0,1]; give linear values from 0 up";
-    if (!inUnitRange(material.metallic)) return "has metallic " + std::to_string(material.metallic) + "; give a value in [0,1]";
-    if (!inUnitRange(material.roughness)) return "has roughness " + std::to_string(material.roughness) + "; give a value in [0,1]";
+    if (!inUnitRange(material.metallic)) return fmt::format("has metallic {:f}; give a value in [0,1]", material.metallic);
+    if (!inUnitRange(material.roughness)) return fmt::format("has roughness {:f}; give a value in [0,1]", material.roughness);
     if (!nonNegative(material.emission)) return "has an emission that is negative or not finite; give radiance from 0 up";
     if (!(material.alphaCutoff >= 0.0f) || !std::isfinite(material.alphaCutoff)) return "has a bad alpha cutoff; give 0 (opaque) or more";
     for (const TextureRef* texture : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.emissionTexture})
@@ -129,28 +131,26 @@ std::string geometryFault(const Scene& scene)
 {
     const size_t count = scene.positions.size();
     if (scene.normals.size() != count || scene.uvs.size() != count)
-        return "The scene has " + std::to_string(count) + " positions, " + std::to_string(scene.normals.size()) + " normals and " +
-               std::to_string(scene.uvs.size()) + " uvs; give one of each per vertex.";
+        return fmt::format("The scene has {} positions, {} normals and {} uvs; give one of each per vertex.", count, scene.normals.size(),
+                           scene.uvs.size());
     if (count > std::numeric_limits<uint32_t>::max() || scene.triangles.size() > std::numeric_limits<uint32_t>::max())
         return "The scene has more than 2^32 vertices or triangles; split it.";
     if (scene.triangleMaterial.size() != scene.triangles.size())
-        return "The scene has " + std::to_string(scene.triangles.size()) + " triangles but " +
-               std::to_string(scene.triangleMaterial.size()) + " triangle materials; give one per triangle.";
+        return fmt::format("The scene has {} triangles but {} triangle materials; give one per triangle.", scene.triangles.size(),
+                           scene.triangleMaterial.size());
     for (size_t i = 0; i < count; ++i)
     {
-        if (!finite(scene.positions[i])) return "Vertex " + std::to_string(i) + " has a position that is not finite; mend the mesh.";
-        if (!unit(scene.normals[i])) return "Vertex " + std::to_string(i) + " has a normal that is not unit length; normalise it.";
-        if (!finite(scene.uvs[i])) return "Vertex " + std::to_string(i) + " has a uv that is not finite; mend the mesh.";
+        if (!finite(scene.positions[i])) return fmt::format("Vertex {} has a position that is not finite; mend the mesh.", i);
+        if (!unit(scene.normals[i])) return fmt::format("Vertex {} has a normal that is not unit length; normalise it.", i);
+        if (!finite(scene.uvs[i])) return fmt::format("Vertex {} has a uv that is not finite; mend the mesh.", i);
     }
     for (size_t i = 0; i < scene.triangles.size(); ++i)
     {
         const uvec3 t = scene.triangles[i];
         if (std::max({t.x, t.y, t.z}) >= count)
-            return "Triangle " + std::to_string(i) + " uses vertex " + std::to_string(std::max({t.x, t.y, t.z})) + " of " +
-                   std::to_string(count) + "; mend the indices.";
+            return fmt::format("Triangle {} uses vertex {} of {}; mend the indices.", i, std::max({t.x, t.y, t.z}), count);
         if (scene.triangleMaterial[i] >= scene.materials.size())
-            return "Triangle " + std::to_string(i) + " uses material " + std::to_string(scene.triangleMaterial[i]) + " of " +
-                   std::to_string(scene.materials.size()) + "; mend the index.";
+            return fmt::format("Triangle {} uses material {} of {}; mend the index.", i, scene.triangleMaterial[i], scene.materials.size());
     }
     return {};
 }
@@ -159,7 +159,7 @@ template <class Thing, class Check> std::string firstFault(const char* kind, con
 {
     for (size_t i = 0; i < things.size(); ++i)
         if (const std::string fault = check(things[i]); !fault.empty())
-            return std::string(kind) + " " + std::to_string(i) + " ('" + things[i].name + "') " + fault + ".";
+            return fmt::format("{} {} ('{}') {}.", kind, i, things[i].name, fault);
     return {};
 }
 
@@ -197,8 +197,7 @@ std::string validate(const Scene& scene)
     const auto imageFault = [](const Image& image) -> std::string
     {
         if (image.width == 0 || image.height == 0 || image.rgba.size() != size_t(image.width) * image.height * 4)
-            return "is " + std::to_string(image.width) + "x" + std::to_string(image.height) + " with " + std::to_string(image.rgba.size()) +
-                   " bytes; give width * height * 4 bytes";
+            return fmt::format("is {}x{} with {} bytes; give width * height * 4 bytes", image.width, image.height, image.rgba.size());
         return {};
     };
     if (std::string fault = firstFault("Image", scene.images, imageFault); !fault.empty()) return fault;

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "shaders/shared/brdf.h"
 
 namespace sconce
@@ -16,7 +18,7 @@ namespace
 
 std::string count(uint64_t n, const char* one, const char* many)
 {
-    return std::to_string(n) + " " + (n == 1 ? one : many);
+    return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
 std::string percent(double share)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <tiny_gltf.h>
@@ -172,8 +173,7 @@ vec2 pairOr(const tg::Value& object, const std::string& key, vec2 missing)
 
 template <class List> std::string outside(const char* kind, int index, const List& list)
 {
-    return std::string(kind) + " " + std::to_string(index) + " of " + std::to_string(list.size()) +
-           "; the file is damaged, export it again.";
+    return fmt::format("{} {} of {}; the file is damaged, export it again.", kind, index, list.size());
 }
 
 template <class List> bool has(const List& list, int index)
@@ -241,9 +241,9 @@ Status Importer::visit(const Visit& next, std::vector<Visit>& pending)
 {
     const int index = next.node;
     if (!has(model.nodes, index)) return bad("The scene uses " + outside("node", index, model.nodes));
-    const std::string owner = "Node " + std::to_string(index);
+    const std::string owner = fmt::format("Node {}", index);
     if (next.depth > GltfLimits::nodeDepth)
-        return bad(owner + " lies more than " + std::to_string(GltfLimits::nodeDepth) + " levels deep; flatten the hierarchy.");
+        return bad(fmt::format("{} lies more than {} levels deep; flatten the hierarchy.", owner, GltfLimits::nodeDepth));
     // glTF 2.0 asks for trees. Besides cycles this stops the doubling of a node at every level by two parents.
     if (visited[size_t(index)]) return bad(owner + " is reached twice: it has two parents or is part of a cycle; export the file again.");
     visited[size_t(index)] = true;
@@ -265,8 +265,8 @@ Status Importer::addInstances(const tg::Node& node, int index, const dmat4& worl
 {
     // Before checkBudget(), which counts triangles per instance: the list of instances must fit memory, too.
     constexpr size_t kMaxInstances = 10'000'000;
-    const std::string owner = "Node " + std::to_string(index);
-    if (!has(model.meshes, node.mesh)) return bad(owner + " uses " + outside("mesh", node.mesh, model.meshes));
+    const std::string owner = fmt::format("Node {}", index);
+    if (!has(model.meshes, node.mesh)) return bad(fmt::format("{} uses {}", owner, outside("mesh", node.mesh, model.meshes)));
     if (node.skin != -1) note("Skins are ignored; skinned meshes stand in their rest pose.");
     const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
     if (extension == node.extensions.end() || !extension->second.Has("attributes"))
@@ -309,13 +309,13 @@ Status Importer::addInstances(const tg::Node& node, int index, const dmat4& worl
 Status Importer::addLight(const tg::Node& node, int index, const dmat4& world)
 {
     const int which = indexOr(node.extensions.at("KHR_lights_punctual"), "light", -1);
-    if (!has(model.lights, which)) return bad("Node " + std::to_string(index) + " uses " + outside("light", which, model.lights));
+    if (!has(model.lights, which)) return bad(fmt::format("Node {} uses {}", index, outside("light", which, model.lights)));
     const tg::Light& source = model.lights[size_t(which)];
     Light light;
     light.name = source.name.empty() ? node.name : source.name;
     if (source.type != "directional" && source.type != "point" && source.type != "spot")
     {
-        note("A light of unknown type '" + source.type.substr(0, 40) + "' is ignored.");
+        note(fmt::format("A light of unknown type '{}' is ignored.", source.type.substr(0, 40)));
         return success();
     }
     light.type = source.type == "directional" ? LightType::directional : source.type == "point" ? LightType::point : LightType::spot;
@@ -323,7 +323,7 @@ Status Importer::addLight(const tg::Node& node, int index, const dmat4& world)
     const dvec3 along = -dvec3(world[2]); // a light shines along its node's -z; scale doesn't change its intensity
     const double length = glm::length(along);
     if (light.type != LightType::point && !(length > 0.0 && std::isfinite(length)))
-        return bad("Light '" + light.name + "' has a node scaled to nothing, so it has no direction; mend the node's scale.");
+        return bad(fmt::format("Light '{}' has a node scaled to nothing, so it has no direction; mend the node's scale.", light.name));
     if (length > 0.0) light.direction = vec3(along / length);
     vec3 colour(1.0f);
     if (source.color.size() == 3) colour = vec3(source.color[0], source.color[1], source.color[2]);
@@ -332,15 +332,14 @@ Status Importer::addLight(const tg::Node& node, int index, const dmat4& world)
     light.outerCone = float(std::clamp(source.spot.outerConeAngle, 0.0, 1.5707963));
     light.innerCone = float(std::clamp(source.spot.innerConeAngle, 0.0, double(light.outerCone)));
     if (!finite(light.position) || !finite(light.intensity) || !std::isfinite(light.range))
-        return bad("Light '" + light.name + "' has a position, intensity or range that is not finite; mend it.");
+        return bad(fmt::format("Light '{}' has a position, intensity or range that is not finite; mend it.", light.name));
     scene.lights.push_back(std::move(light));
     return success();
 }
 
 Status Importer::addCamera(const tg::Node& node, int index, const dmat4& world)
 {
-    if (!has(model.cameras, node.camera))
-        return bad("Node " + std::to_string(index) + " uses " + outside("camera", node.camera, model.cameras));
+    if (!has(model.cameras, node.camera)) return bad(fmt::format("Node {} uses {}", index, outside("camera", node.camera, model.cameras)));
     const tg::Camera& source = model.cameras[size_t(node.camera)];
     if (source.type != "perspective")
     {
@@ -348,7 +347,7 @@ Status Importer::addCamera(const tg::Node& node, int index, const dmat4& world)
         return success();
     }
     Camera camera;
-    camera.name = !node.name.empty() ? node.name : !source.name.empty() ? source.name : "camera " + std::to_string(scene.cameras.size());
+    camera.name = !node.name.empty() ? node.name : !source.name.empty() ? source.name : fmt::format("camera {}", scene.cameras.size());
     camera.eye = vec3(world[3]);
     const dvec3 forward = -dvec3(world[2]), side = glm::cross(forward, dvec3(world[1]));
     camera.verticalFov = float(source.perspective.yfov);
@@ -386,21 +385,21 @@ Status Importer::checkBudget()
                                                                          : -1;
             if (has(model.accessors, counted)) total += trianglesIn(primitive, model.accessors[size_t(counted)].count);
             if (total > GltfLimits::triangles)
-                return bad("The scene has more than " + std::to_string(GltfLimits::triangles) +
-                           " triangles with its instances; split or simplify it.");
+                return bad(
+                    fmt::format("The scene has more than {} triangles with its instances; split or simplify it.", GltfLimits::triangles));
         }
     return success();
 }
 
 Result<AccessorView> Importer::view(int index, int components, const std::string& owner) const
 {
-    if (!has(model.accessors, index)) return bad(owner + " uses " + outside("accessor", index, model.accessors));
+    if (!has(model.accessors, index)) return bad(fmt::format("{} uses {}", owner, outside("accessor", index, model.accessors)));
     const tg::Accessor& accessor = model.accessors[size_t(index)];
     AccessorView out;
     out.components = tg::GetNumComponentsInType(uint32_t(accessor.type));
     if (out.components != components)
-        return bad(owner + " uses accessor " + std::to_string(index) + " with " + std::to_string(out.components) + " components where " +
-                   std::to_string(components) + " are needed; export the file again.");
+        return bad(fmt::format("{} uses accessor {} with {} components where {} are needed; export the file again.", owner, index,
+                               out.components, components));
     out.count = accessor.count;
     out.componentType = accessor.componentType;
     out.normalized = accessor.normalized;
@@ -428,8 +427,8 @@ Result<AccessorView> Importer::view(int index, int components, const std::string
         const auto element = uint32_t(where.component(i, 0));
         // Ascending, as glTF 2.0 asks: component() finds them by binary search.
         if (element >= out.count || (!out.replaced.empty() && element <= out.replaced.back().first))
-            return bad("Accessor " + std::to_string(index) + " has sparse index " + std::to_string(element) + " of " +
-                       std::to_string(out.count) + " out of range or order; export the file again.");
+            return bad(fmt::format("Accessor {} has sparse index {} of {} out of range or order; export the file again.", index, element,
+                                   out.count));
         out.replaced.emplace_back(element, values + i * size);
     }
     return out;
@@ -457,8 +456,7 @@ Result<std::vector<uint32_t>> Importer::indicesOf(const tg::Primitive& primitive
     {
         indices[i] = uint32_t(plain.component(i, 0));
         if (indices[i] >= vertices)
-            return bad(owner + " has index " + std::to_string(indices[i]) + " of " + std::to_string(vertices) +
-                       " vertices; the file is damaged, export it again.");
+            return bad(fmt::format("{} has index {} of {} vertices; the file is damaged, export it again.", owner, indices[i], vertices));
     }
     return indices;
 }
@@ -468,8 +466,7 @@ Status Importer::buildPieces(int mesh)
     std::vector<Piece> built;
     const auto& primitives = model.meshes[size_t(mesh)].primitives;
     for (size_t i = 0; i < primitives.size(); ++i)
-        if (Status status = buildPiece(primitives[i], "Mesh " + std::to_string(mesh) + " primitive " + std::to_string(i), built); !status)
-            return status;
+        if (Status status = buildPiece(primitives[i], fmt::format("Mesh {} primitive {}", mesh, i), built); !status) return status;
     pieces.emplace(mesh, std::move(built));
     return success();
 }
@@ -496,7 +493,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
         return success();
     }
     if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP && mode != TINYGLTF_MODE_TRIANGLE_FAN)
-        return bad(owner + " has mode " + std::to_string(mode) + ", which glTF 2.0 doesn't have; export the file again.");
+        return bad(fmt::format("{} has mode {}, which glTF 2.0 doesn't have; export the file again.", owner, mode));
     if (!primitive.attributes.count("POSITION"))
     {
         note("A mesh primitive without positions is ignored; export it with positions.");
@@ -524,7 +521,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
     }
 
     std::optional<AccessorView> normals, uvs;
-    const std::string uvName = "TEXCOORD_" + std::to_string(uvSets[*material]);
+    const std::string uvName = fmt::format("TEXCOORD_{}", uvSets[*material]);
     const auto optional = [&](const std::string& name, int components, std::optional<AccessorView>& into) -> Status
     {
         const auto it = primitive.attributes.find(name);
@@ -532,8 +529,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
         auto found = view(it->second, components, owner);
         if (!found) return found.error();
         if (found->count < positions->count)
-            return bad(owner + " has " + std::to_string(found->count) + " of " + name + " for " + std::to_string(positions->count) +
-                       " vertices; export the file again.");
+            return bad(fmt::format("{} has {} of {} for {} vertices; export the file again.", owner, found->count, name, positions->count));
         into = std::move(*found);
         return success();
     };
@@ -552,8 +548,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
     for (const uint32_t vertex : used)
     {
         const vec3 position(positions->vec3At(vertex));
-        if (!finite(position))
-            return bad(owner + " has a position that is not finite at vertex " + std::to_string(vertex) + "; mend the mesh.");
+        if (!finite(position)) return bad(fmt::format("{} has a position that is not finite at vertex {}; mend the mesh.", owner, vertex));
         vec2 uv(0.0f);
         if (uvs) uv = {float(uvs->component(vertex, 0)), float(uvs->component(vertex, 1))};
         if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
@@ -577,7 +572,7 @@ Result<uint32_t> Importer::materialOf(int index)
     const tg::Material& source = index == -1 ? standard : model.materials[size_t(index)];
     const tg::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     Material m;
-    m.name = index == -1 ? "default" : source.name.empty() ? "material " + std::to_string(index) : source.name;
+    m.name = index == -1 ? "default" : source.name.empty() ? fmt::format("material {}", index) : source.name;
     const auto clamped = [&](double value)
     {
         if (!(value >= 0.0 && value <= 1.0)) note("Material factors outside [0,1] were clamped.");
@@ -596,7 +591,7 @@ Result<uint32_t> Importer::materialOf(int index)
         strength = std::max(numberOr(it->second, "emissiveStrength", 1.0), 0.0);
     if (source.emissiveFactor.size() == 3)
         for (int i = 0; i < 3; ++i) m.emission[i] = float(std::max(source.emissiveFactor[size_t(i)], 0.0) * strength);
-    if (!finite(m.emission)) return bad("Material '" + m.name + "' has an emission that is not finite; lower its strength.");
+    if (!finite(m.emission)) return bad(fmt::format("Material '{}' has an emission that is not finite; lower its strength.", m.name));
 
     int uvSet = -1; // the first textured slot decides; the base colour comes first
     if (Status s = readTexture(pbr.baseColorTexture.extensions, pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
@@ -636,7 +631,7 @@ Status Importer::readTexture(const tg::ExtensionMap& extensions, int index, int 
     if (texture.sampler != -1)
     {
         if (!has(model.samplers, texture.sampler))
-            return bad("Texture " + std::to_string(index) + " uses " + outside("sampler", texture.sampler, model.samplers));
+            return bad(fmt::format("Texture {} uses {}", index, outside("sampler", texture.sampler, model.samplers)));
         const auto wrap = [](int mode)
         {
             return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::clamp
@@ -657,7 +652,7 @@ Status Importer::readTexture(const tg::ExtensionMap& extensions, int index, int 
         out.uvOffset = pairOr(it->second, "offset", vec2(0.0f));
         texCoord = indexOr(it->second, "texCoord", texCoord);
         const float sum = scale.x + scale.y + out.uvOffset.x + out.uvOffset.y + c;
-        if (!std::isfinite(sum)) return bad("Texture " + std::to_string(index) + " has a transform that is not finite; mend it.");
+        if (!std::isfinite(sum)) return bad(fmt::format("Texture {} has a transform that is not finite; mend it.", index));
     }
     if (uvSet < 0) uvSet = std::max(texCoord, 0);
     if (uvSet != texCoord) note("Only one set of texture coordinates per material is used, that of its first texture.");
@@ -679,7 +674,7 @@ Result<int> Importer::imageOf(int source)
     }
     else
     {
-        auto read = guarded.folder.read(entry.uri, "Image '" + entry.name + "'");
+        auto read = guarded.folder.read(entry.uri, fmt::format("Image '{}'", entry.name));
         if (!read) return read.error();
         file = std::move(*read);
         bytes = file;
@@ -687,7 +682,7 @@ Result<int> Importer::imageOf(int source)
     auto image = decodeImage(bytes, entry.name);
     if (!image) return image.error();
     if ((pixels += uint64_t(image->width) * image->height) > GltfLimits::imagePixels)
-        return bad("The images hold more than " + std::to_string(GltfLimits::imagePixels >> 20) + " Mpixel together; scale them down.");
+        return bad(fmt::format("The images hold more than {} Mpixel together; scale them down.", GltfLimits::imagePixels >> 20));
     scene.images.push_back(std::move(*image));
     if (!report(progress, "images", double(scene.images.size()) / double(guarded.images.size()))) return cancelled();
     return images[source] = int(scene.images.size() - 1);
@@ -762,7 +757,7 @@ void Importer::noteIgnored()
         "EXT_meshopt_compression", "KHR_meshopt_compression",         "KHR_draco_mesh_compression"};
     for (const std::string& extension : model.extensionsUsed)
         if (std::find(std::begin(known), std::end(known), extension) == std::end(known))
-            note("The extension " + extension + " is ignored.");
+            note(fmt::format("The extension {} is ignored.", extension));
     if (!model.animations.empty()) note("Animations are ignored; everything stands as its nodes say.");
 }
 
@@ -781,10 +776,10 @@ Result<Scene> Importer::run(std::string name)
     }
     noteIgnored();
     for (const auto& [sentence, count] : notes)
-        scene.warnings.push_back(count == 1 ? sentence : sentence + " (" + std::to_string(count) + " times)");
-    if (degenerate > 0) scene.warnings.push_back(std::to_string(degenerate) + " triangles without area were dropped.");
+        scene.warnings.push_back(count == 1 ? sentence : fmt::format("{} ({} times)", sentence, count));
+    if (degenerate > 0) scene.warnings.push_back(fmt::format("{} triangles without area were dropped.", degenerate));
     if (invisible > 0)
-        scene.warnings.push_back(std::to_string(invisible) + " triangles whose constant alpha lies below the cutoff were dropped.");
+        scene.warnings.push_back(fmt::format("{} triangles whose constant alpha lies below the cutoff were dropped.", invisible));
     if (scene.triangles.empty()) scene.warnings.push_back("The scene has no triangles; check that its default scene holds meshes.");
     if (const std::string fault = validate(scene); !fault.empty()) return bad(fault);
     return std::move(scene);
@@ -811,17 +806,18 @@ Result<Scene> loadGltf(const std::filesystem::path& file, const Progress& progre
                                         tg::REQUIRE_VERSION))
         {
             while (!error.empty() && (error.back() == '\n' || error.back() == '.')) error.pop_back();
-            return bad("'" + file.filename().string() + "' can't be parsed as glTF: " + error.substr(0, 300) + "; export it again.");
+            return bad(fmt::format("'{}' can't be parsed as glTF: {}; export it again.", file.filename().string(), error.substr(0, 300)));
         }
         return Importer(*guarded, model, progress).run(file.stem().string());
     }
     catch (const std::bad_alloc&)
     {
-        return Error{ErrorCode::outOfMemory, "The import of '" + file.filename().string() + "' ran out of memory; simplify the scene."};
+        return Error{ErrorCode::outOfMemory,
+                     fmt::format("The import of '{}' ran out of memory; simplify the scene.", file.filename().string())};
     }
     catch (const std::exception& problem) // tinygltf's; ours throws nothing
     {
-        return bad("'" + file.filename().string() + "' can't be parsed as glTF (" + problem.what() + "); export it again.");
+        return bad(fmt::format("'{}' can't be parsed as glTF ({}); export it again.", file.filename().string(), problem.what()));
     }
 }
 

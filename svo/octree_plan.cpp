@@ -8,6 +8,8 @@
 #include <string>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "base/limits.h"
 #include "base/parallel.h"
 #include "shaders/shared/pure.h"
@@ -125,8 +127,7 @@ std::string argumentFault(const ProbeMaps& maps, const OctreeSettings& settings)
 {
     if (maps.probes.empty()) return "an octree needs at least one probe; place some first";
     if (maps.probes.size() > kMostProbes)
-        return std::to_string(maps.probes.size()) + " probes are more than the " + std::to_string(kMostProbes) +
-               " an octree can index; place fewer";
+        return fmt::format("{} probes are more than the {} an octree can index; place fewer", maps.probes.size(), kMostProbes);
     if (const std::string fault = firstFault({faultOf(knobs::octreeVoxels, settings.voxels), faultOf(knobs::topShift, settings.topShift)});
         !fault.empty())
         return "octree settings: " + fault;

@@ -1,6 +1,8 @@
 // sconce bake: the light field of a scene at given probes.
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "placement/probe_set.h"
 #include "runtime/bake/bake.h"
 #include "runtime/field/light_field_file.h"
@@ -58,9 +60,8 @@ int runBake(const BakeOptions& options, const Context& context)
     if (report.moved > 0 && !context.quiet)
         std::cerr << "note: " << report.moved << " of " << positions.size()
                   << " probes stood on a surface, or closer than a probe sees, and were moved off it"
-                  << (report.tight > 0
-                          ? "; " + std::to_string(report.tight) + " of them found no place between two surfaces: forbid or move them"
-                          : "")
+                  << (report.tight > 0 ? fmt::format("; {} of them found no place between two surfaces: forbid or move them", report.tight)
+                                       : "")
                   << "\n";
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     if (context.json)

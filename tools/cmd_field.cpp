@@ -1,6 +1,8 @@
 // sconce info and verify: what is in a light field's file.
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "runtime/field/light_field_file.h"
 #include "tools/field_report.h"
 
@@ -52,8 +54,9 @@ int runVerify(const FileOptions& options, const Context& context)
             std::cout << (block.problem.empty() ? "ok       " : "DAMAGED  ") << block.name << "  " << block.storedBytes << " bytes"
                       << (block.problem.empty() ? "" : ": " + block.problem) << std::endl;
     if (report->ok()) return exitOk;
-    return fail(ErrorCode::badInput,
-                !report->problem.empty() ? report->problem : "'" + options.file + "' is damaged; bake it again or restore it from a copy.");
+    return fail(ErrorCode::badInput, !report->problem.empty()
+                                         ? report->problem
+                                         : fmt::format("'{}' is damaged; bake it again or restore it from a copy.", options.file));
 }
 
 } // namespace

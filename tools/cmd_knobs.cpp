@@ -2,6 +2,8 @@
 #include <iostream>
 #include <regex>
 
+#include <fmt/format.h>
+
 #include "base/knobs.h"
 #include "tools/common.h"
 
@@ -25,9 +27,9 @@ std::string marked(std::string text)
 
 std::string nameIn(const KnobRow& row)
 {
-    std::string names = row.option.empty() ? "" : "`" + std::string(row.option) + "`";
+    std::string names = row.option.empty() ? "" : fmt::format("`{}`", row.option);
     for (const std::string& member : row.member.empty() ? std::vector<std::string>() : split(std::string(row.member), ','))
-        names += (names.empty() ? "`" : ", `") + member.substr(member.find_first_not_of(' ')) + "`";
+        names += fmt::format("{}{}`", names.empty() ? "`" : ", `", member.substr(member.find_first_not_of(' ')));
     return names;
 }
 

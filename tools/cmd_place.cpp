@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "bench/reference/image_io.h"
 #include "placement/place.h"
 #include "runtime/field/field_data.h"
@@ -30,9 +32,9 @@ Result<uint32_t> countFor(uint64_t memory, uint32_t resolution)
 {
     const uint64_t each = bytesPerProbe(gpu::kChartCube, resolution);
     if (memory < each)
-        return Error{ErrorCode::badArgument, "--memory is " + std::to_string(memory) + " bytes, but one probe takes " +
-                                                 std::to_string(each) + " at --resolution " + std::to_string(resolution) +
-                                                 "; raise the one or lower the other."};
+        return Error{ErrorCode::badArgument,
+                     fmt::format("--memory is {} bytes, but one probe takes {} at --resolution {}; raise the one or lower the other.",
+                                 memory, each, resolution)};
     return uint32_t(std::min<uint64_t>(memory / each, kMostProbes));
 }
 
@@ -63,8 +65,9 @@ int runPlace(const PlaceOptions& options, const Context& context)
         const auto added =
             std::count_if(settings.pins.begin(), settings.pins.end(), [](const Pin& pin) { return pin.kind == Pin::Kind::add; });
         if (options.memory > 0 && uint64_t(added) >= settings.count)
-            return fail(Error{ErrorCode::badArgument, "--memory holds " + std::to_string(settings.count) + " probes but --pin adds " +
-                                                          std::to_string(added) + "; raise the budget or add fewer."});
+            return fail(
+                Error{ErrorCode::badArgument,
+                      fmt::format("--memory holds {} probes but --pin adds {}; raise the budget or add fewer.", settings.count, added)});
         if (options.memory > 0) settings.count -= uint32_t(added); // added ones need memory, too
     }
     Result<Scene> scene = options.scene.load(context);

@@ -3,6 +3,8 @@
 #include <iostream>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "bench/reference/metrics.h"
 #include "bench/reference/reference.h"
 #include "tools/pictures.h"
@@ -38,7 +40,7 @@ int runReference(const ReferenceOptions& options, const Context& context)
     Result<Reference> reference = renderReference(*scene, settings, consoleProgress(context));
     if (!reference) return fail(reference.error());
     if (reference->nonFinitePaths > 0)
-        note(context, "Note: " + std::to_string(reference->nonFinitePaths) + " paths were not finite and were left out.");
+        note(context, fmt::format("Note: {} paths were not finite and were left out.", reference->nonFinitePaths));
     Json json;
     json["spp"] = settings.samples;
     json["bounces"] = settings.bounces;
@@ -73,7 +75,7 @@ int runCompare(const CompareOptions& options, const Context& context)
     for (const std::string& name : split(options.metrics, ','))
     {
         if (!wanted.contains(name))
-            return fail(ErrorCode::badArgument, "--metric: there is no metric '" + name + "'; there are mse, relmse, psnr, flip.");
+            return fail(ErrorCode::badArgument, fmt::format("--metric: there is no metric '{}'; there are mse, relmse, psnr, flip.", name));
         *wanted[name] = true;
     }
     std::vector<std::pair<std::string, float>> limits;
@@ -83,7 +85,7 @@ int runCompare(const CompareOptions& options, const Context& context)
         const Result<std::vector<float>> value = parseNumbers(parts.back(), {1});
         if (parts.size() != 2 || !wanted.contains(parts[0]) || !value)
             return fail(ErrorCode::badArgument,
-                        "--fail-above: '" + limit + "' is not METRIC=X with a metric of mse, relmse, psnr, flip and a number.");
+                        fmt::format("--fail-above: '{}' is not METRIC=X with a metric of mse, relmse, psnr, flip and a number.", limit));
         *wanted[parts[0]] = true;
         limits.emplace_back(parts[0], value->front());
     }

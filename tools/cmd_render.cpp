@@ -4,6 +4,8 @@
 #include <iostream>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "bench/opponents/baselines.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/frame/effect_plan.h"
@@ -159,7 +161,7 @@ int runRender(RenderOptions options, const Context& context)
     if (!camera) return fail(camera.error());
     if (options.areaShadows == kField && options.tracer != "ours")
         return fail(ErrorCode::badArgument,
-                    "--area-shadows field is traced by our tracer; leave it out, or --tracer " + options.tracer + ".");
+                    fmt::format("--area-shadows field is traced by our tracer; leave it out, or --tracer {}.", options.tracer));
     const Result<EffectPlan> plan = choosePlan(options, *scene);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
@@ -167,12 +169,13 @@ int runRender(RenderOptions options, const Context& context)
     const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
     if (!data) return fail(data.error());
     if (!data->sceneName.empty() && data->sceneName != scene->name)
-        note(context, "Note: the light field was baked from scene '" + data->sceneName + "', this is '" + scene->name + "'.");
+        note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
     for (const PlannedEffect& effect : plan->effects)
         if (effect.ofScene && !effect.givenUp.empty() && std::ranges::find(data->effects, effect.name) != data->effects.end())
-            note(context, "Note: the light field was baked with " + effect.name +
-                              ", and what it holds of that stays in indirect light; bake with the same --effects.");
+            note(context, fmt::format("Note: the light field was baked with {}, and what it holds of that stays in indirect light; bake "
+                                      "with the same --effects.",
+                                      effect.name));
 
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
     if (!device) return fail(device.error());
@@ -254,7 +257,7 @@ int runRender(RenderOptions options, const Context& context)
     else
     {
         std::cout << options.pictures.output << ": " << options.width << "x" << options.height << " on " << device->name() << ", frame "
-                  << (frameMs.empty() ? std::string("not timed") : std::to_string(median(frameMs)) + " ms") << "\n";
+                  << (frameMs.empty() ? std::string("not timed") : fmt::format("{:f} ms", median(frameMs))) << "\n";
         for (const std::string& pass : passes) std::cout << "  " << pass << ": " << median(passMs[pass]) << " ms\n";
         std::cout << std::flush;
     }

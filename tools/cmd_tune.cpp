@@ -1,6 +1,8 @@
 // sconce tune: settings from the measured front of a bench.
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "base/safe_file.h"
 #include "bench/sweep/tune.h"
 #include "tools/common.h"
@@ -43,7 +45,7 @@ int runTune(const TuneOptions& options, const Context& context)
         return exitOk;
     }
     return fail(ErrorCode::badArgument,
-                "'" + options.results + "' has no scene '" + options.scene + "'; it has: " + (known.empty() ? "none" : known) + ".");
+                fmt::format("'{}' has no scene '{}'; it has: {}.", options.results, options.scene, known.empty() ? "none" : known));
 }
 
 } // namespace

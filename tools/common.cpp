@@ -12,6 +12,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
 
@@ -162,11 +164,11 @@ Progress consoleProgress(const Context& context)
         state->lastShown = time;
         state->lastDone = done;
         const double elapsed = time - state->stageStart;
-        std::string text = std::to_string(int(100.0 * done)) + " %";
+        std::string text = fmt::format("{} %", int(100.0 * done));
         if (done >= 1.0)
             text += ", took " + minutes(elapsed);
         else if (done > 0.02 && elapsed > 1.0)
-            text += ", " + minutes(elapsed * (1.0 - done) / done) + " left";
+            text += fmt::format(", {} left", minutes(elapsed * (1.0 - done) / done));
         if (terminal)
         {
             const int filled = int(24.0 * done);
@@ -203,15 +205,15 @@ Result<std::vector<float>> parseNumbers(const std::string& text, std::initialize
         const char* first = part.data() + (part.starts_with('+') ? 1 : 0);
         const auto [end, error] = std::from_chars(first, part.data() + part.size(), number);
         if (part.empty() || error != std::errc{} || end != part.data() + part.size() || !std::isfinite(number))
-            return Error{ErrorCode::badArgument, "'" + part + "' in '" + text + "' is not a finite number"};
+            return Error{ErrorCode::badArgument, fmt::format("'{}' in '{}' is not a finite number", part, text)};
         numbers.push_back(number);
     }
     if (std::ranges::find(counts, numbers.size()) == counts.end())
     {
         std::string wanted;
-        for (const size_t count : counts) wanted += (wanted.empty() ? "" : " or ") + std::to_string(count);
+        for (const size_t count : counts) wanted += fmt::format("{}{}", wanted.empty() ? "" : " or ", count);
         return Error{ErrorCode::badArgument,
-                     "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " + wanted + ", separated by commas"};
+                     fmt::format("'{}' has {} numbers instead of {}, separated by commas", text, numbers.size(), wanted)};
     }
     return numbers;
 }
@@ -224,12 +226,11 @@ Result<std::vector<uint32_t>> parseSize(const std::string& text, size_t count)
         uint32_t number = 0;
         const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
         if (part.empty() || error != std::errc{} || end != part.data() + part.size() || number == 0 || number > 65535)
-            return Error{ErrorCode::badArgument, "'" + part + "' in '" + text + "' is not a whole number from 1 to 65535"};
+            return Error{ErrorCode::badArgument, fmt::format("'{}' in '{}' is not a whole number from 1 to 65535", part, text)};
         numbers.push_back(number);
     }
     if (numbers.size() != count)
-        return Error{ErrorCode::badArgument, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers instead of " +
-                                                 std::to_string(count) + ", separated by x"};
+        return Error{ErrorCode::badArgument, fmt::format("'{}' has {} numbers instead of {}, separated by x", text, numbers.size(), count)};
     return numbers;
 }
 
@@ -250,7 +251,7 @@ void addVec3(CLI::App* command, const std::string& name, std::optional<vec3>& ta
 
 void addSize(CLI::App* command, uint32_t& width, uint32_t& height)
 {
-    const auto spelled = [](uint32_t across, uint32_t down) { return std::to_string(across) + "x" + std::to_string(down); };
+    const auto spelled = [](uint32_t across, uint32_t down) { return fmt::format("{}x{}", across, down); };
     const std::string most = spelled(knobs::width.most, knobs::height.most);
     command
         ->add_option_function<std::string>(
@@ -261,9 +262,10 @@ void addSize(CLI::App* command, uint32_t& width, uint32_t& height)
                 if (!numbers) throw CLI::ValidationError("--size", numbers.error().message);
                 width = (*numbers)[0], height = (*numbers)[1];
                 if (!knobs::width.inRange(width) || !knobs::height.inRange(height))
-                    throw CLI::ValidationError("--size", "'" + text + "' is beyond " + most + ".");
+                    throw CLI::ValidationError("--size", fmt::format("'{}' is beyond {}.", text, most));
             },
-            described("Picture size in pixels", spelled(width, height), spelled(knobs::width.least, knobs::height.least) + " to " + most))
+            described("Picture size in pixels", spelled(width, height),
+                      fmt::format("{} to {}", spelled(knobs::width.least, knobs::height.least), most)))
         ->type_name("WxH");
 }
 
@@ -287,15 +289,15 @@ void SceneOptions::addLight(CLI::App* command)
                 const Result<std::vector<float>> n = parseNumbers(text, {3, 6});
                 if (!n) throw CLI::ValidationError("--sun", n.error().message);
                 const vec3 direction((*n)[0], (*n)[1], (*n)[2]);
-                if (!(glm::length(direction) > 0.0f)) throw CLI::ValidationError("--sun", "'" + text + "' has no direction");
+                if (!(glm::length(direction) > 0.0f)) throw CLI::ValidationError("--sun", fmt::format("'{}' has no direction", text));
                 sunDirection = glm::normalize(direction);
                 if (n->size() == 6) sunIrradiance = vec3((*n)[3], (*n)[4], (*n)[5]);
                 if (sunIrradiance && glm::any(glm::lessThan(*sunIrradiance, vec3(0.0f))))
-                    throw CLI::ValidationError("--sun", "'" + text + "' has negative light");
+                    throw CLI::ValidationError("--sun", fmt::format("'{}' has negative light", text));
             },
             described("Replaces the scene's directional lights by one: the way its light travels, any length, and its irradiance in W/m^2",
-                      defaultText(knobs::light) + "; irradiance " + knobText(kDefaultSunIrradiance[0]) + "," +
-                          knobText(kDefaultSunIrradiance[1]) + "," + knobText(kDefaultSunIrradiance[2]),
+                      fmt::format("{}; irradiance {},{},{}", defaultText(knobs::light), knobText(kDefaultSunIrradiance[0]),
+                                  knobText(kDefaultSunIrradiance[1]), knobText(kDefaultSunIrradiance[2])),
                       rangeText(knobs::light)))
         ->type_name("X,Y,Z[,R,G,B]");
     command
@@ -306,7 +308,8 @@ void SceneOptions::addLight(CLI::App* command)
                 const Result<std::vector<float>> n = parseNumbers(text, {3});
                 if (!n) throw CLI::ValidationError("--sky", n.error().message);
                 sky = vec3((*n)[0], (*n)[1], (*n)[2]);
-                if (glm::any(glm::lessThan(*sky, vec3(0.0f)))) throw CLI::ValidationError("--sky", "'" + text + "' has negative light");
+                if (glm::any(glm::lessThan(*sky, vec3(0.0f))))
+                    throw CLI::ValidationError("--sky", fmt::format("'{}' has negative light", text));
             },
             described(knobs::light.what, defaultText(knobs::light), rangeText(knobs::light)))
         ->type_name("R,G,B");
@@ -325,7 +328,8 @@ Result<Scene> SceneOptions::load(const Context& context) const
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     if (!builtin && extension != ".gltf" && extension != ".glb")
-        return Error{ErrorCode::badInput, "'" + name + "' is neither a .gltf or .glb file nor a built-in scene (" + builtinNames + ")."};
+        return Error{ErrorCode::badInput,
+                     fmt::format("'{}' is neither a .gltf or .glb file nor a built-in scene ({}).", name, builtinNames)};
     Result<Scene> scene = builtin ? makeBuiltinScene(name) : loadGltf(path, consoleProgress(context));
     endProgress();
     if (!scene) return scene;
@@ -370,16 +374,17 @@ Result<Camera> CameraOptions::choose(const Scene& scene) const
         camera.verticalFov = glm::radians(fov);
         return camera;
     }
-    if (scene.cameras.empty()) return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no camera; give --eye and --target."};
+    if (scene.cameras.empty())
+        return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no camera; give --eye and --target.", scene.name)};
     if (name.empty()) return scene.cameras.front();
     std::string known;
     for (size_t i = 0; i < scene.cameras.size(); ++i)
     {
-        if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
+        if (scene.cameras[i].name == name || fmt::to_string(i) == name) return scene.cameras[i];
         known += (known.empty() ? "" : ", ") + scene.cameras[i].name;
     }
     return Error{ErrorCode::badArgument,
-                 "The scene '" + scene.name + "' has no camera '" + name + "'; it has: " + (known.empty() ? "none" : known) + "."};
+                 fmt::format("The scene '{}' has no camera '{}'; it has: {}.", scene.name, name, known.empty() ? "none" : known)};
 }
 
 void addDevice(CLI::App* command, std::string& device)

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "bench/opponents/baselines.h"
 #include "runtime/bake/prefilter.h"
 #include "runtime/field/light_field_file.h"
@@ -84,7 +86,7 @@ void printField(const FieldData& field, const std::string& file)
 void noteGivenUp(const Context& context, const EffectPlan& plan)
 {
     for (const PlannedEffect& effect : plan.effects)
-        if (!effect.givenUp.empty()) note(context, "Given up: " + effect.name + ". " + effect.givenUp);
+        if (!effect.givenUp.empty()) note(context, fmt::format("Given up: {}. {}", effect.name, effect.givenUp));
 }
 
 Result<FieldData> loadFieldFor(const std::string& file, const std::string& tracer)
@@ -95,14 +97,15 @@ Result<FieldData> loadFieldFor(const std::string& file, const std::string& trace
     if (const std::optional<Baseline> baseline = baselineNamed(tracer))
     {
         Result<FieldData> made = baselineField(std::move(*field), *baseline);
-        if (!made) return Error{made.error().code, "'" + file + "': " + made.error().message};
+        if (!made) return Error{made.error().code, fmt::format("'{}': {}", file, made.error().message)};
         return made;
     }
     if (field->info.probeCount == 0)
-        return Error{ErrorCode::badInput, "Light field '" + file + "' has no probes; place some and bake it again."};
+        return Error{ErrorCode::badInput, fmt::format("Light field '{}' has no probes; place some and bake it again.", file)};
     if (field->info.chart != gpu::kChartCube)
-        return Error{ErrorCode::badInput,
-                     "Tracer ours needs cube probes; '" + file + "' has octahedral ones. Bake with --chart cube, or give --tracer b0plus."};
+        return Error{
+            ErrorCode::badInput,
+            fmt::format("Tracer ours needs cube probes; '{}' has octahedral ones. Bake with --chart cube, or give --tracer b0plus.", file)};
     return field;
 }
 

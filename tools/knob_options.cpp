@@ -1,11 +1,13 @@
 #include "tools/knob_options.h"
 
+#include <fmt/format.h>
+
 namespace sconce::tools
 {
 
 std::string described(std::string_view what, const std::string& byDefault, const std::string& range)
 {
-    return std::string(what) + " (default: " + byDefault + (range.empty() ? "" : "; range: " + range) + ")";
+    return fmt::format("{} (default: {}{})", what, byDefault, range.empty() ? "" : "; range: " + range);
 }
 
 std::string described(std::string_view what, Words byDefault, const std::string& range)

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "base/knobs.h"
 
@@ -36,7 +37,7 @@ std::string described(std::string_view what, const char* byDefault, const std::s
 template <class T> std::string wordsOf(const Knob<T>& knob)
 {
     std::string text(knob.what);
-    return knob.buys.empty() ? text : text + "; " + std::string(knob.buys);
+    return knob.buys.empty() ? text : fmt::format("{}; {}", text, knob.buys);
 }
 
 /// The check of the knob's range.
@@ -50,7 +51,7 @@ template <class T> CLI::Validator checkOf(const Knob<T>& knob)
             allowed = knob.inRange(text);
         else
             allowed = CLI::detail::lexical_cast(text, value) && knob.inRange(value);
-        return allowed ? std::string() : "it can't be '" + text + "'; give " + rangeText(knob) + ".";
+        return allowed ? std::string() : fmt::format("it can't be '{}'; give {}.", text, rangeText(knob));
     };
     return CLI::Validator(check, "");
 }

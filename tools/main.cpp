@@ -2,6 +2,8 @@
 #include <exception>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "tools/common.h"
 
 int main(int argc, char** argv)
@@ -48,6 +50,6 @@ int main(int argc, char** argv)
     }
     catch (const std::exception& error)
     {
-        return fail(sconce::ErrorCode::badInput, std::string("Unexpected failure: ") + error.what() + ".");
+        return fail(sconce::ErrorCode::badInput, fmt::format("Unexpected failure: {}.", error.what()));
     }
 }

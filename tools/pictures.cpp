@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace sconce::tools
 {
 
@@ -34,7 +36,7 @@ std::string PictureOptions::problem(const std::vector<std::string>& layers) cons
     if (aov.empty()) return {};
     for (const std::string& name : split(aov, ','))
         if (std::ranges::find(layers, name) == layers.end())
-            return "--aov: there is no layer '" + name + "' here; there are " + joined(layers) + ".";
+            return fmt::format("--aov: there is no layer '{}' here; there are {}.", name, joined(layers));
     return {};
 }
 

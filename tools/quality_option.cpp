@@ -1,5 +1,7 @@
 #include "tools/quality_option.h"
 
+#include <fmt/format.h>
+
 namespace sconce::tools
 {
 
@@ -8,9 +10,9 @@ void QualityOption::add(CLI::App* to)
     command = to;
     std::string levels;
     for (const QualityLevel& level : qualityLevels()) levels.append(levels.empty() ? "" : ", ").append(level.name);
-    to->add_option(
-          "--quality", text,
-          described("A file of `sconce tune`, or " + levels + ": sets what the other options don't", words("the other options' defaults")))
+    to->add_option("--quality", text,
+                   described(fmt::format("A file of `sconce tune`, or {}: sets what the other options don't", levels),
+                             words("the other options' defaults")))
         ->type_name("FILE|LEVEL");
 }
 

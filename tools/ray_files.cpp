@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/safe_file.h"
 
 namespace sconce::tools
@@ -64,12 +66,12 @@ Result<std::vector<gpu::Ray>> readRays(const std::filesystem::path& file)
     std::string line;
     if (!stream || !std::getline(stream, line))
         return Error{ErrorCode::fileError,
-                     "Cannot read rays from '" + file.string() + "'; give a CSV file with a header and a ray a line."};
+                     fmt::format("Cannot read rays from '{}'; give a CSV file with a header and a ray a line.", file.string())};
     if (!line.empty() && line.back() == '\r') line.pop_back();
     const int columns = line == kRaysWithNormalsHeader ? 9 : 6;
     if (columns == 6 && line != kRaysHeader)
-        return Error{ErrorCode::badInput, "Rays file '" + file.string() + "' begins with '" + line.substr(0, 60) +
-                                              "' instead of the header " + kRaysHeader + " or " + kRaysWithNormalsHeader + "."};
+        return Error{ErrorCode::badInput, fmt::format("Rays file '{}' begins with '{}' instead of the header {} or {}.", file.string(),
+                                                      line.substr(0, 60), kRaysHeader, kRaysWithNormalsHeader)};
     std::vector<gpu::Ray> rays;
     for (size_t number = 2; std::getline(stream, line); ++number)
     {
@@ -84,14 +86,13 @@ Result<std::vector<gpu::Ray>> readRays(const std::filesystem::path& file)
             good = (column == 0 || (at != end && *at++ == ',')) && parseNumber(at, end, value);
         }
         if (!good || at != end)
-            return Error{ErrorCode::badInput, "Line " + std::to_string(number) + " of '" + file.string() + "' is '" + line.substr(0, 60) +
-                                                  "' instead of " + (columns == 9 ? "nine" : "six") + " numbers separated by commas."};
+            return Error{ErrorCode::badInput, fmt::format("Line {} of '{}' is '{}' instead of {} numbers separated by commas.", number,
+                                                          file.string(), line.substr(0, 60), columns == 9 ? "nine" : "six")};
         ray.direction = unitOrZero(ray.direction);
         ray.normal = unitOrZero(ray.normal);
         rays.push_back(ray);
     }
-    if (stream.bad())
-        return Error{ErrorCode::fileError, "Reading '" + file.string() + "' failed after " + std::to_string(rays.size()) + " rays."};
+    if (stream.bad()) return Error{ErrorCode::fileError, fmt::format("Reading '{}' failed after {} rays.", file.string(), rays.size())};
     return rays;
 }
 
@@ -100,7 +101,7 @@ Status writeHits(std::span<const gpu::RayHit> hits, const std::filesystem::path&
     static constexpr const char* kNames[] = {"miss", "hit", "unknown"}; // in the order of gpu::RayHit::status;
     Result<SafeFile> target = SafeFile::create(file);
     if (!target) return target.error();
-    std::string text = std::string(kHitsHeader) + "\n";
+    std::string text = fmt::format("{}\n", kHitsHeader);
     const auto flush = [&]
     {
         const Status status = target->append(std::as_bytes(std::span(text)));
@@ -115,7 +116,7 @@ Status writeHits(std::span<const gpu::RayHit> hits, const std::filesystem::path&
         append(text, hit.normal);
         append(text, hit.radiance);
         for (const int count : {hit.probe == gpu::kNoProbe ? -1 : int(hit.probe), hit.handoffs, hit.distanceReads, hit.indexReads})
-            text += ',' + std::to_string(count);
+            text += fmt::format(",{}", count);
         text += '\n';
         if (text.size() > (1u << 20))
             if (Status status = flush(); !status) return status;

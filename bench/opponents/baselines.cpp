@@ -5,6 +5,8 @@
 #include <cassert>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/parallel.h"
 #include "bench/opponents/baseline_cpu.h"
 #include "bench/opponents/wang_field.h"
@@ -48,14 +50,16 @@ std::string whatIsMissing(const FieldData& field, Baseline baseline)
                    ? "has octahedral maps, and tracer wang makes its own from cube faces; bake with --chart cube at twice the resolution"
                    : "";
     const std::string tracer(baselineName(baseline));
-    if (!octahedral) return "has cube faces, and tracer " + tracer + " reads octahedral maps; bake with --chart octahedral";
+    if (!octahedral) return fmt::format("has cube faces, and tracer {} reads octahedral maps; bake with --chart octahedral", tracer);
     if (baseline == Baseline::b0PlusOctree)
-        return field.octree.texels.empty() ? "has no octree, where tracer " + tracer + " finds its probes; bake it again" : "";
-    if (info.gridX == 0) return "is not a grid of probes, and tracer " + tracer + " needs one; place with --method grid and bake it again";
+        return field.octree.texels.empty() ? fmt::format("has no octree, where tracer {} finds its probes; bake it again", tracer) : "";
+    if (info.gridX == 0)
+        return fmt::format("is not a grid of probes, and tracer {} needs one; place with --method grid and bake it again", tracer);
     if (baseline == Baseline::b0 &&
         !(std::has_single_bit(info.gridX) && std::has_single_bit(info.gridY) && std::has_single_bit(info.gridZ)))
-        return "is a grid of " + std::to_string(info.gridX) + "x" + std::to_string(info.gridY) + "x" + std::to_string(info.gridZ) +
-               " probes, and tracer b0 wraps their indices: place with --method grid and --grid of powers of two, and bake it again";
+        return fmt::format("is a grid of {}x{}x{} probes, and tracer b0 wraps their indices: place with --method grid and --grid of powers "
+                           "of two, and bake it again",
+                           info.gridX, info.gridY, info.gridZ);
     return "";
 }
 
@@ -124,12 +128,12 @@ uint32_t bestLowFactor(Baseline baseline)
 Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t lowFactor)
 {
     if (const std::string missing = whatIsMissing(field, baseline); !missing.empty())
-        return Error{ErrorCode::badInput, "The light field of scene '" + field.sceneName + "' " + missing + "."};
+        return Error{ErrorCode::badInput, fmt::format("The light field of scene '{}' {}.", field.sceneName, missing)};
     if (baseline == Baseline::wang) return wangField(field);
     const uint32_t factor = lowFactor ? lowFactor : bestLowFactor(baseline);
     if (!std::has_single_bit(factor) || field.info.faceSize % factor != 0)
-        return Error{ErrorCode::badArgument, "A low factor of " + std::to_string(factor) + " does not divide maps of " +
-                                                 std::to_string(field.info.faceSize) + " texels; give 8, 16 or 32"};
+        return Error{ErrorCode::badArgument,
+                     fmt::format("A low factor of {} does not divide maps of {} texels; give 8, 16 or 32", factor, field.info.faceSize)};
     setLowFactor(field, factor);
     return field;
 }

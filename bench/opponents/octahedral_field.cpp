@@ -1,6 +1,6 @@
 #include "bench/opponents/octahedral_field.h"
 
-#include <string>
+#include <fmt/format.h>
 
 #include "base/parallel.h"
 #include "runtime/field/field_space.h"
@@ -74,7 +74,7 @@ Result<FieldData> octahedralField(const FieldData& faces, uint32_t size)
                      "Our tracer's octahedral maps are made from cube faces, these are octahedral. Bake with --chart cube."};
     if (size == 0 || size % 64 != 0)
         return Error{ErrorCode::badArgument,
-                     "Our tracer's octahedral maps need a multiple of 64 texels a side, not " + std::to_string(size) + "."};
+                     fmt::format("Our tracer's octahedral maps need a multiple of 64 texels a side, not {}.", size)};
     const uint32_t topLevel = coarsestLevel(size);
     FieldData made = octahedralCopy(faces, size, topLevel, Pure<float>::chainWords(size, int(topLevel)));
     const uint32_t faceSize = faces.info.faceSize;

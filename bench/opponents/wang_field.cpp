@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <string>
+
+#include <fmt/format.h>
 
 #include "base/parallel.h"
 #include "bench/opponents/octahedral_field.h"
@@ -133,8 +134,9 @@ Result<FieldData> wangField(const FieldData& faces)
 {
     const uint32_t size = faces.info.faceSize;
     if (!std::has_single_bit(size) || size < 2 * kFewestCells)
-        return Error{ErrorCode::badInput, "Tracer wang needs cube faces whose size is a power of two from 16; these have " +
-                                              std::to_string(size) + " texels a side. Bake at a resolution that is a power of two."};
+        return Error{ErrorCode::badInput, fmt::format("Tracer wang needs cube faces whose size is a power of two from 16; these have {} "
+                                                      "texels a side. Bake at a resolution that is a power of two.",
+                                                      size)};
     const uint32_t topLevel = uint32_t(std::countr_zero(size / kFewestCells));
     uint32_t words = 0;
     for (uint32_t level = 0; level <= topLevel; ++level) words += (size >> level) * (size >> level);

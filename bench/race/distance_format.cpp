@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/parallel.h"
 #include "runtime/field/field_space.h"
 
@@ -45,8 +47,8 @@ Result<FieldData> narrowedField(FieldData faces, int bits)
     if (format == std::end(kFormats))
     {
         std::string known;
-        for (const DistanceFormat& one : kFormats) known += (known.empty() ? "" : ", ") + std::to_string(one.bits);
-        return Error{ErrorCode::badArgument, "There is no distance format of " + std::to_string(bits) + " bits; there are " + known + "."};
+        for (const DistanceFormat& one : kFormats) known += fmt::format("{}{}", known.empty() ? "" : ", ", one.bits);
+        return Error{ErrorCode::badArgument, fmt::format("There is no distance format of {} bits; there are {}.", bits, known)};
     }
     if (faces.info.chart != gpu::kChartCube)
         return Error{ErrorCode::badInput, "Distance formats are ours, of cube faces; these maps are octahedral. Bake with --chart cube."};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "bench/race/tracer_race.h"
 
@@ -18,12 +19,12 @@ inline void addRaceOptions(CLI::App& app, RaceSettings& race)
         ->required();
     const auto add = [&app](const char* name, uint32_t& target, const Knob<uint32_t>& knob)
     {
-        app.add_option(name, target, std::string(knob.what) + " (default: " + defaultText(knob) + "; range: " + rangeText(knob) + ")")
+        app.add_option(name, target, fmt::format("{} (default: {}; range: {})", knob.what, defaultText(knob), rangeText(knob)))
             ->check(CLI::Range(knob.least, knob.most));
     };
     add("--runs", race.runs, knobs::timedRuns);
     add("--timed", race.timed, knobs::timedRays);
-    app.add_option("--seed", race.seed, "seed of the rays and of their shuffling (default: " + std::to_string(race.seed) + ")");
+    app.add_option("--seed", race.seed, fmt::format("seed of the rays and of their shuffling (default: {})", race.seed));
     app.add_flag("--cpu", race.cpu, "trace the same rays on the CPU, too, and count the answers that differ");
     app.add_flag("--json", race.json, "machine-readable results");
 }

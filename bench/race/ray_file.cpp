@@ -5,6 +5,8 @@
 #include <cstring>
 #include <fstream>
 
+#include <fmt/format.h>
+
 #include "base/safe_file.h"
 
 namespace sconce
@@ -36,7 +38,7 @@ static_assert(sizeof(Record) == 40);
 
 Error damaged(const std::filesystem::path& file, const char* what)
 {
-    return {ErrorCode::badInput, "File '" + file.string() + "' " + what + "; record the rays again."};
+    return {ErrorCode::badInput, fmt::format("File '{}' {}; record the rays again.", file.string(), what)};
 }
 
 } // namespace
@@ -59,7 +61,7 @@ Status saveRays(const RaySet& set, const std::filesystem::path& file)
 Result<RaySet> loadRays(const std::filesystem::path& file)
 {
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read."};
+    if (!stream) return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read.", file.string())};
     Header header, expected;
     if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
         std::memcmp(header.magic, expected.magic, sizeof header.magic) != 0)

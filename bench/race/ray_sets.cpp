@@ -5,8 +5,8 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
-#include <string>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "base/random.h"
@@ -105,8 +105,8 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
     if (cameras.empty() && points.empty())
         return Error{ErrorCode::badArgument, "glossy rays need a viewpoint; give a camera or an interior point"};
     if (!(settings.alphaLow >= 1e-3f && settings.alphaLow <= settings.alphaHigh && settings.alphaHigh <= 1.0f))
-        return Error{ErrorCode::badArgument, "glossy rays' alpha range is " + std::to_string(settings.alphaLow) + " to " +
-                                                 std::to_string(settings.alphaHigh) + "; choose 0.001 <= low <= high <= 1"};
+        return Error{ErrorCode::badArgument, fmt::format("glossy rays' alpha range is {:f} to {:f}; choose 0.001 <= low <= high <= 1",
+                                                         settings.alphaLow, settings.alphaHigh)};
     RaySet set = emptySet(rays, settings.count);
     std::vector<uint64_t> places(settings.count);
     std::atomic<bool> blind{false};
@@ -144,8 +144,9 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
                           blind.store(true);
                       });
     if (blind.load())
-        return Error{ErrorCode::badInput, "the viewpoints of scene '" + rays.scene().name + "' see no surface in " +
-                                              std::to_string(kTries) + " tries; give a camera or point that looks at the scene"};
+        return Error{ErrorCode::badInput,
+                     fmt::format("the viewpoints of scene '{}' see no surface in {} tries; give a camera or point that looks at the scene",
+                                 rays.scene().name, kTries)};
     sortByPlace(set, places);
     return set;
 }

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "bench/race/scene_rays.h"
 #include "bench/race/tracer_race.h"
@@ -81,7 +82,7 @@ Status run(Options& options)
     std::error_code failed;
     std::filesystem::create_directories(options.folder, failed);
     if (failed)
-        return Error{ErrorCode::fileError, "Cannot make the folder '" + options.folder + "': " + failed.message() + "; give another."};
+        return Error{ErrorCode::fileError, fmt::format("Cannot make the folder '{}': {}; give another.", options.folder, failed.message())};
     BakeSettings settings;
     settings.resolution = options.resolution;
     settings.bounces = 0;
@@ -92,7 +93,7 @@ Status run(Options& options)
         BakeReport report;
         auto field = bakeLightField(device->host(), *scene, positions, settings, {}, report);
         if (!field) return field.error();
-        const std::string file = options.folder + "/" + std::to_string(scene->triangles.size()) + ".sconce";
+        const std::string file = fmt::format("{}/{}.sconce", options.folder, scene->triangles.size());
         if (auto status = saveField(*field, file); !status) return status;
         options.race.fields.push_back(file);
         auto finer = RayScene::create(*scene);

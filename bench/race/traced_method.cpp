@@ -8,6 +8,8 @@
 #include <sstream>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "base/parallel.h"
 #include "base/random.h"
 #include "bench/opponents/octahedral_field.h"
@@ -49,14 +51,15 @@ Status setKnobs(Tracer& how, const std::string& knobs)
         const std::string_view name = std::string_view(knob).substr(0, colon);
         const auto found = std::ranges::find(known, name, [](const auto& entry) { return entry.first; });
         if (found == std::end(known))
-            return Error{ErrorCode::badArgument, "'" + std::string(name) +
-                                                     "' is no knob of the tracer; give ranked, maxHandoffs, startLevel, "
-                                                     "coarsestLevel, tolerance, epsilon, opinion, farBounds, octahedral or distanceBits"};
+            return Error{ErrorCode::badArgument,
+                         fmt::format("'{}' is no knob of the tracer; give ranked, maxHandoffs, startLevel, coarsestLevel, tolerance, "
+                                     "epsilon, opinion, farBounds, octahedral or distanceBits",
+                                     name)};
         const char* begin = knob.data() + std::min(colon + 1, knob.size());
         const char* end = knob.data() + knob.size();
         const auto read = std::visit([&](auto* value) { return std::from_chars(begin, end, *value); }, found->second);
         if (begin == end || read.ec != std::errc() || read.ptr != end)
-            return Error{ErrorCode::badArgument, "'" + knob + "' has no number after its colon; write NAME:VALUE"};
+            return Error{ErrorCode::badArgument, fmt::format("'{}' has no number after its colon; write NAME:VALUE", knob)};
     }
     how.octahedral = uint32_t(octahedral);
     return success();
@@ -80,11 +83,11 @@ Result<Spelled> parse(const std::string& what)
         }
         const char* end = factor.data() + factor.size();
         if (std::from_chars(factor.data(), end, out.lowFactor).ptr != end || out.lowFactor == 0)
-            return Error{ErrorCode::badArgument, "'" + factor + "' in '" + what + "' is no low factor; give 8, 16 or 32"};
+            return Error{ErrorCode::badArgument, fmt::format("'{}' in '{}' is no low factor; give 8, 16 or 32", factor, what)};
         out.tracer.resize(slash);
     }
     if (out.tracer != "ours" && !baselineNamed(out.tracer))
-        return Error{ErrorCode::badArgument, "'" + out.tracer + "' in '" + what + "' is not ours, b0, b0plus, b0plus-octree or wang"};
+        return Error{ErrorCode::badArgument, fmt::format("'{}' in '{}' is not ours, b0, b0plus, b0plus-octree or wang", out.tracer, what)};
     return out;
 }
 
@@ -162,9 +165,9 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, const std::
         how.opponent = data->info.gridX != 0 ? Baseline::b0Plus : Baseline::b0PlusOctree;
     std::string label = how.opponent ? std::string(baselineName(*how.opponent)) : "ours";
     if (!spelled->knobs.empty()) label.append("/").append(spelled->knobs);
-    if (spelled->lowFactor) label.append("/").append(std::to_string(spelled->lowFactor));
+    if (spelled->lowFactor) label += fmt::format("/{}", spelled->lowFactor);
     auto made = create(gpu, std::move(*data), how, std::move(label));
-    if (!made) return Error{made.error().code, "'" + spelled->file + "': " + made.error().message};
+    if (!made) return Error{made.error().code, fmt::format("'{}': {}", spelled->file, made.error().message)};
     (*made)->path = spelled->file;
     return made;
 }

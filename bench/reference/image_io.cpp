@@ -12,6 +12,8 @@
 #include <ImfOutputFile.h>
 #include <png.h>
 
+#include <fmt/format.h>
+
 #include "base/numbers.h"
 #include "base/safe_file.h"
 
@@ -25,13 +27,13 @@ constexpr const char* kColours[3] = {"R", "G", "B"};
 std::string channelName(const Layer& layer, uint32_t channel)
 {
     const std::string suffix = layer.channels == 1 ? "Y" : kColours[channel];
-    return layer.name == "beauty" ? suffix : layer.name + "." + suffix;
+    return layer.name == "beauty" ? suffix : fmt::format("{}.{}", layer.name, suffix);
 }
 
 Error fileFailure(const std::filesystem::path& file, const std::string& doing, const std::string& why)
 {
     return Error{ErrorCode::fileError,
-                 "could not " + doing + " '" + file.string() + "': " + why + "; check the path, the rights and the free space"};
+                 fmt::format("could not {} '{}': {}; check the path, the rights and the free space", doing, file.string(), why)};
 }
 
 /// OpenEXR writes here; what it wrote then becomes a file at once or not at all.
@@ -72,9 +74,8 @@ Layer& ImageSet::add(std::string name, uint32_t channels)
 Status writeExr(const ImageSet& images, const std::filesystem::path& file)
 {
     if (images.width == 0 || images.height == 0 || images.layers.empty())
-        return Error{ErrorCode::badArgument, "nothing to write to '" + file.string() + "': the picture is " + std::to_string(images.width) +
-                                                 "x" + std::to_string(images.height) + " with " + std::to_string(images.layers.size()) +
-                                                 " layers; render it first"};
+        return Error{ErrorCode::badArgument, fmt::format("nothing to write to '{}': the picture is {}x{} with {} layers; render it first",
+                                                         file.string(), images.width, images.height, images.layers.size())};
     Memory memory;
     try
     {
@@ -84,8 +85,8 @@ Status writeExr(const ImageSet& images, const std::filesystem::path& file)
         for (const Layer& layer : images.layers)
         {
             if ((layer.channels != 1 && layer.channels != 3) || layer.pixels.size() != images.pixelCount() * layer.channels)
-                return Error{ErrorCode::badArgument, "layer '" + layer.name + "' has " + std::to_string(layer.pixels.size()) +
-                                                         " floats; it needs width x height x 1 or 3"};
+                return Error{ErrorCode::badArgument,
+                             fmt::format("layer '{}' has {} floats; it needs width x height x 1 or 3", layer.name, layer.pixels.size())};
             for (uint32_t channel = 0; channel < layer.channels; ++channel)
             {
                 const std::string name = channelName(layer, channel);
@@ -164,8 +165,8 @@ Result<ImageSet> readExr(const std::filesystem::path& file)
 Status writePng(std::span<const float> linearRgb, uint32_t width, uint32_t height, const std::filesystem::path& file)
 {
     if (width == 0 || height == 0 || linearRgb.size() != size_t(width) * height * 3)
-        return Error{ErrorCode::badArgument, "PNG '" + file.string() + "' has " + std::to_string(linearRgb.size()) + " floats for " +
-                                                 std::to_string(width) + "x" + std::to_string(height) + " pixels; it needs three a pixel"};
+        return Error{ErrorCode::badArgument, fmt::format("PNG '{}' has {} floats for {}x{} pixels; it needs three a pixel", file.string(),
+                                                         linearRgb.size(), width, height)};
     std::vector<uint8_t> bytes(linearRgb.size());
     std::transform(linearRgb.begin(), linearRgb.end(), bytes.begin(),
                    [](float v) { return static_cast<uint8_t>(std::lround(255.0f * srgbFromLinear(v))); });

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "bench/reference/flip.h"
 
 namespace sconce
@@ -43,7 +45,7 @@ Result<const Layer*> findLayer(const ImageSet& images, const std::string& name, 
     if (const Layer* layer = images.find(name)) return layer;
     std::string names;
     for (const Layer& layer : images.layers) names += (names.empty() ? "" : ", ") + layer.name;
-    return Error{ErrorCode::badInput, std::string(which) + " has no layer '" + name + "'; it has: " + (names.empty() ? "none" : names)};
+    return Error{ErrorCode::badInput, fmt::format("{} has no layer '{}'; it has: {}", which, name, names.empty() ? "none" : names)};
 }
 
 } // namespace
@@ -84,17 +86,16 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
     const auto layerB = findLayer(reference, settings.layer, "the reference");
     if (!layerB) return layerB.error();
     if (a.width != reference.width || a.height != reference.height || (*layerA)->channels != (*layerB)->channels || a.pixelCount() == 0)
-        return Error{ErrorCode::badInput, "the pictures differ in size: " + std::to_string(a.width) + "x" + std::to_string(a.height) + "x" +
-                                              std::to_string((*layerA)->channels) + " and " + std::to_string(reference.width) + "x" +
-                                              std::to_string(reference.height) + "x" + std::to_string((*layerB)->channels) +
-                                              "; render both with the same --size"};
+        return Error{ErrorCode::badInput,
+                     fmt::format("the pictures differ in size: {}x{}x{} and {}x{}x{}; render both with the same --size", a.width, a.height,
+                                 (*layerA)->channels, reference.width, reference.height, (*layerB)->channels)};
     if (!(settings.pixelsPerDegree >= 1.0f && settings.pixelsPerDegree <= 1000.0f))
-        return Error{ErrorCode::badArgument, "pixels per degree is " + std::to_string(settings.pixelsPerDegree) + "; choose 1 to 1000"};
+        return Error{ErrorCode::badArgument, fmt::format("pixels per degree is {:f}; choose 1 to 1000", settings.pixelsPerDegree)};
     if (settings.exposure && !(*settings.exposure > 0.0f && std::isfinite(*settings.exposure)))
-        return Error{ErrorCode::badArgument, "exposure is " + std::to_string(*settings.exposure) + "; choose a positive number"};
+        return Error{ErrorCode::badArgument, fmt::format("exposure is {:f}; choose a positive number", *settings.exposure)};
     if (const uint64_t bad = nonFinitePixels(**layerB))
-        return Error{ErrorCode::badInput, "the reference's layer '" + settings.layer + "' has " + std::to_string(bad) +
-                                              " pixels that are not finite; render it again"};
+        return Error{ErrorCode::badInput,
+                     fmt::format("the reference's layer '{}' has {} pixels that are not finite; render it again", settings.layer, bad)};
 
     const std::vector<float> left = asRgb(**layerA), right = asRgb(**layerB);
     CompareResult result;

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
@@ -116,15 +117,15 @@ Result<std::vector<uint8_t>> readImage(const std::filesystem::path& folder, cons
     const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
     if (relative.empty() || relative.is_absolute() || *relative.begin() == "..")
         return Error{ErrorCode::badInput,
-                     "Report: the image '" + name + "' lies outside the folder of results.json; name it relative to that folder."};
+                     fmt::format("Report: the image '{}' lies outside the folder of results.json; name it relative to that folder.", name)};
     const std::string path = (folder / relative).string();
     std::ifstream file(path, std::ios::binary);
-    if (!file) return Error{ErrorCode::fileError, "Report: the image " + path + " that results.json names can't be read."};
+    if (!file) return Error{ErrorCode::fileError, fmt::format("Report: the image {} that results.json names can't be read.", path)};
     std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (file.bad()) return Error{ErrorCode::fileError, "Report: reading the image " + path + " failed."};
+    if (file.bad()) return Error{ErrorCode::fileError, fmt::format("Report: reading the image {} failed.", path)};
 
     if (!isWholeImage(bytes))
-        return Error{ErrorCode::badInput, "Report: " + path + " is no report image, or cut short; measure that point again."};
+        return Error{ErrorCode::badInput, fmt::format("Report: {} is no report image, or cut short; measure that point again.", path)};
     return bytes;
 }
 
@@ -151,20 +152,21 @@ Status writeReportPage(const nlohmann::ordered_json& results, const std::filesys
     std::filesystem::create_directories(target.parent_path(), failed);
     if (failed)
         return Error{ErrorCode::fileError,
-                     "Report: the folder " + target.parent_path().string() + " can't be made: " + failed.message() + "."};
+                     fmt::format("Report: the folder {} can't be made: {}.", target.parent_path().string(), failed.message())};
     Result<SafeFile> file = SafeFile::create(target);
     if (!file) return file.error();
     const auto append = [&](std::string_view text) { return file->append(std::as_bytes(std::span(text))); };
 
     if (const Status done = append(page.substr(0, place)); !done) return done;
-    if (const Status done = append("<script type=\"application/json\" id=\"results\">" + scriptSafe(results) + "</script>\n"); !done)
+    if (const Status done = append(fmt::format("<script type=\"application/json\" id=\"results\">{}</script>\n", scriptSafe(results)));
+        !done)
         return done;
     for (const std::string& name : imageFiles(results))
     {
         const Result<std::vector<uint8_t>> bytes = readImage(folder, name);
         if (!bytes) return bytes.error();
-        const std::string script = "<script type=\"application/octet-stream\" data-name=\"" + attributeSafe(name) + "\">" +
-                                   base64(deflated(*bytes)) + "</script>\n";
+        const std::string script = fmt::format("<script type=\"application/octet-stream\" data-name=\"{}\">{}</script>\n",
+                                               attributeSafe(name), base64(deflated(*bytes)));
         if (const Status done = append(script); !done) return done;
     }
     if (const Status done = append(page.substr(place + mark.size())); !done) return done;

@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -70,7 +72,7 @@ std::string percent(double share)
 
 std::string errorText(std::string_view key, double value)
 {
-    return std::string(nameOfKey(key)) + " " + (key == "wrong_rays" ? percent(value) : figure(value));
+    return fmt::format("{} {}", nameOfKey(key), key == "wrong_rays" ? percent(value) : figure(value));
 }
 
 bool isOurs(const Json& point)
@@ -183,28 +185,28 @@ private:
     {
         const Json ratios = ratiosOf(*mine, their, "glossy.relmse");
         add("probes", "glossy.relmse", opponent, mine, their, ratios,
-            "With " + figure(*figureOf(*mine, "probes")) + " probes against " + figure(*figureOf(their, "probes")) + " of " +
-                methodName(opponent) + ", Sconce takes " + ratioText(ratios) + ".");
+            fmt::format("With {} probes against {} of {}, Sconce takes {}.", figure(*figureOf(*mine, "probes")),
+                        figure(*figureOf(their, "probes")), methodName(opponent), ratioText(ratios)));
     }
 
     void equalError(const std::string& opponent, const Json& their, std::string_view key, std::string_view costKey)
     {
         const double error = *figureOf(their, key);
         if (!figureOf(their, costKey)) return;
-        const std::string as = "For " + errorText(key, error) + ", as " + methodName(opponent) + " has (" + idOf(their) + "), ";
+        const std::string as = fmt::format("For {}, as {} has ({}), ", errorText(key, error), methodName(opponent), idOf(their));
         if (const Json* best = cheapestAsGood(ours, key, error, costKey))
         {
             const Json ratios = ratiosOf(*best, their, key);
-            add("error", key, opponent, best, their, ratios, as + "Sconce (" + idOf(*best) + ") takes " + ratioText(ratios, "error") + ".",
-                costKey);
+            add("error", key, opponent, best, their, ratios,
+                fmt::format("{}Sconce ({}) takes {}.", as, idOf(*best), ratioText(ratios, "error")), costKey);
             return;
         }
         const Json* nearest = bestWithin(ours, key, costKey, std::numeric_limits<double>::infinity());
         if (!nearest) return;
         const Json ratios = ratiosOf(*nearest, their, key);
         add("error", key, opponent, nullptr, their, ratios,
-            as + "no setting of Sconce is good enough: the best (" + idOf(*nearest) + ") has " + times(ratios["error"]) +
-                " the error, with " + ratioText(ratios, "error") + ".",
+            fmt::format("{}no setting of Sconce is good enough: the best ({}) has {} the error, with {}.", as, idOf(*nearest),
+                        times(ratios["error"]), ratioText(ratios, "error")),
             costKey);
     }
 
@@ -212,12 +214,13 @@ private:
     {
         const auto cost = figureOf(their, costKey);
         if (!cost) return;
-        const std::string as = std::string("In no more ") + what + " than " + methodName(opponent) + " takes (" + idOf(their) + "), ";
+        const std::string as = fmt::format("In no more {} than {} takes ({}), ", what, methodName(opponent), idOf(their));
         if (const Json* best = bestWithin(ours, key, costKey, *cost))
         {
             const Json ratios = ratiosOf(*best, their, key);
             add(what, key, opponent, best, their, ratios,
-                as + "Sconce (" + idOf(*best) + ") has " + errorText(key, *figureOf(*best, key)) + ": " + ratioText(ratios) + ".", costKey);
+                fmt::format("{}Sconce ({}) has {}: {}.", as, idOf(*best), errorText(key, *figureOf(*best, key)), ratioText(ratios)),
+                costKey);
         }
         else
             add(what, key, opponent, nullptr, their, Json::object(), as + "Sconce has no setting.", costKey);
@@ -241,8 +244,8 @@ Json pricesOf(const Points& ours, const Json& base)
             const Json time = ratios["time"].is_number() ? ratios["time"] : ratios["reads"];
             const std::optional<double> halving = halvingCost(error, time.is_number() ? time.get<double>() : 0.0);
             const std::optional<double> memory = halvingCost(error, ratios["memory"].is_number() ? ratios["memory"].get<double>() : 0.0);
-            std::string sentence = (*point)["knob"].get<std::string>() + " " + (*point)["value"].get<std::string>() + ": " + times(error) +
-                                   " " + std::string(nameOfKey(key));
+            std::string sentence = fmt::format("{} {}: {} {}", (*point)["knob"].get<std::string>(), (*point)["value"].get<std::string>(),
+                                               times(error), nameOfKey(key));
             if (const std::string rest = ratioText(ratios, "error"); !rest.empty()) sentence += ", " + rest;
             if (halving) sentence.append("; at this rate, halving the error costs ").append(times(*halving)).append(" the time");
             if (halving && memory) sentence.append(" and ").append(times(*memory)).append(" the memory");
@@ -272,7 +275,7 @@ std::string mostFailing(const Json& rays)
     const auto* most = &kinds[0];
     for (const auto& kind : kinds)
         if (rays[kind.first].get<double>() > rays[most->first].get<double>()) most = &kind;
-    return std::string("most of them (") + percent(rays[most->first]) + " of all) because " + most->second;
+    return fmt::format("most of them ({} of all) because {}", percent(rays[most->first]), most->second);
 }
 
 Json breaksOf(const std::vector<Json>& points, const Json* base)
@@ -281,12 +284,14 @@ Json breaksOf(const std::vector<Json>& points, const Json* base)
     for (const Json& point : points)
     {
         const std::string method = point["method"].get<std::string>();
-        const std::string where = methodName(method) + (point["knob"] == "default" ? std::string()
-                                                                                   : " with " + point["knob"].get<std::string>() + " " +
-                                                                                         point["value"].get<std::string>());
+        const std::string where =
+            methodName(method) + (point["knob"] == "default"
+                                      ? std::string()
+                                      : fmt::format(" with {} {}", point["knob"].get<std::string>(), point["value"].get<std::string>()));
         if (!usable(point))
         {
-            breaks.push_back({{"method", method}, {"id", point["id"]}, {"sentence", where + ": " + point["wrong"].get<std::string>()}});
+            breaks.push_back(
+                {{"method", method}, {"id", point["id"]}, {"sentence", fmt::format("{}: {}", where, point["wrong"].get<std::string>())}});
             continue;
         }
         const auto wrong = figureOf(point, "wrong_rays"), glossy = figureOf(point, "glossy.relmse");
@@ -296,7 +301,7 @@ Json breaksOf(const std::vector<Json>& points, const Json* base)
             breaks.push_back(
                 {{"method", method},
                  {"id", point["id"]},
-                 {"sentence", where + " answers " + percent(*wrong) + " of the rays wrongly, " + mostFailing(point["rays"]) + "."}});
+                 {"sentence", fmt::format("{} answers {} of the rays wrongly, {}.", where, percent(*wrong), mostFailing(point["rays"]))}});
             continue;
         }
         if (!base || method != "ours") continue;
@@ -304,12 +309,12 @@ Json breaksOf(const std::vector<Json>& points, const Json* base)
         if (*wrong > kFewWrong && baseWrong && *wrong > kBroken * *baseWrong)
             breaks.push_back({{"method", method},
                               {"id", point["id"]},
-                              {"sentence", where + " answers " + percent(*wrong) + " of the rays wrongly instead of " +
-                                               percent(*baseWrong) + ", " + mostFailing(point["rays"]) + "."}});
+                              {"sentence", fmt::format("{} answers {} of the rays wrongly instead of {}, {}.", where, percent(*wrong),
+                                                       percent(*baseWrong), mostFailing(point["rays"]))}});
         else if (glossy && baseGlossy && *glossy > kBroken * *baseGlossy)
             breaks.push_back({{"method", method},
                               {"id", point["id"]},
-                              {"sentence", where + " has " + times(*glossy / *baseGlossy) + " the glossy term's error."}});
+                              {"sentence", fmt::format("{} has {} the glossy term's error.", where, times(*glossy / *baseGlossy))}});
     }
     return breaks;
 }
@@ -368,8 +373,7 @@ Json analyseScene(const std::vector<Json>& points)
     }
     Json analysis = {{"fronts", Json::object()}, {"equal", Json::array()}, {"prices", Json::array()}, {"breaks", breaksOf(points, base)}};
     for (const std::string_view error : kErrors)
-        for (const std::string_view cost : kCosts)
-            analysis["fronts"][std::string(error) + "|" + std::string(cost)] = paretoFront(all, error, cost);
+        for (const std::string_view cost : kCosts) analysis["fronts"][fmt::format("{}|{}", error, cost)] = paretoFront(all, error, cost);
     // Tracers are compared by what placement, bake and trace bring, the path tracer by whole frames: filters are no merit of a tracer, but
     // are one of the frame.
     Tables tables(oursTraced, base), pathTables(ours, base);
@@ -431,17 +435,18 @@ std::vector<std::string> answersOf(const Json& results)
             }
             if (!worst) continue;
             const std::string where =
-                scene["name"].get<std::string>() + " (against " + methodName((*worst)["method"].get<std::string>()) + ")";
+                fmt::format("{} (against {})", scene["name"].get<std::string>(), methodName((*worst)["method"].get<std::string>()));
             if (unreached)
                 missed += (missed.empty() ? " in " : ", in ") + where;
             else
-                reached += (reached.empty() ? " " : "; ") + times((*worst)["ratio"][question.ratio]) + " as much in " + where;
+                reached += fmt::format("{}{} as much in {}", reached.empty() ? " " : "; ", times((*worst)["ratio"][question.ratio]), where);
         }
         const std::string begin = question.begin;
         if (!reached.empty())
-            answers.push_back(begin + reached + (missed.empty() ? "." : "; no setting of ours does it" + missed + "."));
+            answers.push_back(
+                fmt::format("{}{}{}", begin, reached, missed.empty() ? "." : fmt::format("; no setting of ours does it{}.", missed)));
         else if (!missed.empty())
-            answers.push_back(begin.substr(0, begin.find(", Sconce")) + ": no setting of ours does it" + missed + ".");
+            answers.push_back(fmt::format("{}: no setting of ours does it{}.", begin.substr(0, begin.find(", Sconce")), missed));
     }
     return answers;
 }

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <fstream>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -55,12 +57,14 @@ Result<Json> readGuard(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
     if (!stream)
-        return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read; give a baseline of `sconce bench --baseline`."};
+        return Error{ErrorCode::fileError,
+                     fmt::format("File '{}' can't be read; give a baseline of `sconce bench --baseline`.", file.string())};
     Json json = Json::parse(stream, nullptr, false);
     if (json.is_discarded() || !json.is_object() || json.value("guard", 0) != kGuardVersion || !json.contains("scenes") ||
         !json.contains("margins"))
-        return Error{ErrorCode::badInput, "File '" + file.string() + "' is no baseline of version " + std::to_string(kGuardVersion) +
-                                              "; write it again with `sconce bench --baseline`."};
+        return Error{ErrorCode::badInput,
+                     fmt::format("File '{}' is no baseline of version {}; write it again with `sconce bench --baseline`.", file.string(),
+                                 kGuardVersion)};
     return json;
 }
 
@@ -69,7 +73,7 @@ std::vector<std::string> worsened(const Json& guard, const Json& scene, const st
     std::vector<std::string> sentences;
     for (const Json& before : scene["points"])
     {
-        const std::string id = before["id"], where = scene["name"].get<std::string>() + ", " + id + ": ";
+        const std::string id = before["id"], where = fmt::format("{}, {}: ", scene["name"].get<std::string>(), id);
         const Json* now = nullptr;
         for (const Json& point : points)
             if (point["id"] == id) now = &point;
@@ -87,10 +91,10 @@ std::vector<std::string> worsened(const Json& guard, const Json& scene, const st
             const double most = was * (1.0 + margin["relative"].get<double>()) + margin["absolute"].get<double>();
             const auto is = figureOf(*now, name);
             if (!is)
-                sentences.push_back(where + name + " was not measured; the baseline has " + number(was) + ".");
+                sentences.push_back(fmt::format("{}{} was not measured; the baseline has {}.", where, name, number(was)));
             else if (!(*is <= most))
-                sentences.push_back(where + name + " is " + number(*is) + ", worse than the baseline's " + number(was) +
-                                    " by more than its margin (at most " + number(most) + ").");
+                sentences.push_back(fmt::format("{}{} is {}, worse than the baseline's {} by more than its margin (at most {}).", where,
+                                                name, number(*is), number(was), number(most)));
         }
     }
     return sentences;

@@ -8,6 +8,8 @@
 
 #include <xxhash.h>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -74,7 +76,8 @@ Result<std::string> keyOfFile(const std::filesystem::path& file)
         stream.read(piece.data(), std::streamsize(piece.size()));
         hash.add(std::span<const char>(piece).first(size_t(stream.gcount())));
     }
-    if (!stream.eof()) return Error{ErrorCode::fileError, "Cannot read '" + file.string() + "'; check that it is there and may be read."};
+    if (!stream.eof())
+        return Error{ErrorCode::fileError, fmt::format("Cannot read '{}'; check that it is there and may be read.", file.string())};
     return hex(hash.value());
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <fmt/format.h>
+
 #include "bench/sweep/tune.h"
 
 namespace sconce
@@ -45,7 +47,7 @@ public:
     {
         if (!wants(base)) return;
         if (!plan.knobs.empty() && std::ranges::find(plan.knobs, knob.name) == plan.knobs.end()) return;
-        PlannedPoint point{base.method + "/" + std::string(knob.name) + "=" + value, std::string(knob.name), value, base};
+        PlannedPoint point{fmt::format("{}/{}={}", base.method, knob.name, value), std::string(knob.name), value, base};
         if (!knob.set(point.settings, value)) return; // beyond its range, as half of the least resolution is
         if (knob.get(point.settings) == knob.get(base)) return;
         const auto same = [&](const PlannedPoint& other) { return other.id == point.id; };
@@ -56,14 +58,14 @@ public:
     {
         if (!wants(base) || (!plan.knobs.empty() && std::ranges::find(plan.knobs, kLevelKnob) == plan.knobs.end())) return;
         const std::string value(level.name);
-        points.push_back({base.method + "/" + kLevelKnob + "=" + value, kLevelKnob, value, base});
+        points.push_back({fmt::format("{}/{}={}", base.method, kLevelKnob, value), kLevelKnob, value, base});
         applyLevel(points.back().settings, level);
     }
 
     void addProbeCounts(const PointSettings& base, std::initializer_list<double> factors)
     {
         for (const double factor : factors)
-            addVaried(base, *findKnob("probes"), std::to_string(std::max(1u, uint32_t(base.probes * factor))));
+            addVaried(base, *findKnob("probes"), fmt::to_string(std::max(1u, uint32_t(base.probes * factor))));
     }
 
     std::vector<PlannedPoint> points;
@@ -85,8 +87,8 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         if (!findKnob(name) && name != kLevelKnob)
         {
             std::string known;
-            for (const SweptKnob& knob : sweptKnobs()) known += std::string(knob.name) + ", ";
-            return Error{ErrorCode::badArgument, "There is no knob '" + name + "'; there are: " + known + kLevelKnob + "."};
+            for (const SweptKnob& knob : sweptKnobs()) known += fmt::format("{}, ", knob.name);
+            return Error{ErrorCode::badArgument, fmt::format("There is no knob '{}'; there are: {}{}.", name, known, kLevelKnob)};
         }
     Planner planner(settings);
     PointSettings ours = settings.ours;
@@ -120,7 +122,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         // Opponents get what any method has: other numbers of probes and texels, more rays, sparser tracing.
         planner.addProbeCounts(theirs[i], {0.5, 2.0});
         for (const double factor : opponents()[i].curve)
-            planner.addVaried(theirs[i], *findKnob("resolution"), std::to_string(uint32_t(theirs[i].resolution * factor)));
+            planner.addVaried(theirs[i], *findKnob("resolution"), fmt::to_string(uint32_t(theirs[i].resolution * factor)));
         planner.addVaried(theirs[i], *findKnob("rays"), "4");
         planner.addVaried(theirs[i], *findKnob("trace every"), "4"); // any tracer gains by it
     }

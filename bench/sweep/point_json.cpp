@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -58,9 +60,9 @@ Json wrongness(const Json& point, std::span<const float> reference)
     const Json& error = point["error"]["beauty"]["mse"];
     if (error.is_null()) return "The picture has pixels that are not finite.";
     if (error.get<double>() >= black)
-        return "The picture is wrong beyond use: its MSE is " + error.dump() + ", that of a black one " + Json(black).dump() + ".";
+        return fmt::format("The picture is wrong beyond use: its MSE is {}, that of a black one {}.", error.dump(), Json(black).dump());
     if (point.contains("rays") && point["rays"]["right_1"].get<double>() < kWrongRays)
-        return "More than half of the rays are answered wrongly: " + point["rays"]["right_1"].dump() + " are right.";
+        return fmt::format("More than half of the rays are answered wrongly: {} are right.", point["rays"]["right_1"].dump());
     return nullptr;
 }
 

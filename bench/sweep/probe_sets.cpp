@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -18,7 +20,7 @@ bool wantsPowersOfTwo(const PointSettings& settings)
 
 std::string probeSetName(const PointSettings& settings)
 {
-    return settings.placement + (wantsPowersOfTwo(settings) ? "2-" : "-") + std::to_string(settings.probes);
+    return fmt::format("{}{}{}", settings.placement, wantsPowersOfTwo(settings) ? "2-" : "-", settings.probes);
 }
 
 glm::ivec3 powerOfTwoShape(const Bounds& bounds, uint32_t count)
@@ -55,7 +57,7 @@ Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, 
         place.method = PlaceSettings::Method::grid;
     else if (settings.placement != "optimised")
         return Error{ErrorCode::badArgument,
-                     "Placement '" + settings.placement + "' is not known; there are optimised, skeleton, balls and grid."};
+                     fmt::format("Placement '{}' is not known; there are optimised, skeleton, balls and grid.", settings.placement)};
     PlaceReport report;
     Result<ProbeSet> set = placeProbes(scene, place, report, progress);
     if (set && wantsPowersOfTwo(settings) && place.method == PlaceSettings::Method::grid)

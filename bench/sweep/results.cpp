@@ -11,6 +11,8 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include "base/safe_file.h"
 #include "runtime/vulkan/host_vulkan.h"
 
@@ -144,11 +146,12 @@ Status writeResults(const Json& results, const std::filesystem::path& folder)
 Result<Json> readResults(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
-    if (!stream) return Error{ErrorCode::fileError, "File '" + file.string() + "' can't be read; give the results.json of a bench."};
+    if (!stream)
+        return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read; give the results.json of a bench.", file.string())};
     Json json = Json::parse(stream, nullptr, false);
     if (json.is_discarded() || !json.is_object() || json.value("schema", Json()) != kSchema || !json.contains("scenes"))
-        return Error{ErrorCode::badInput, "File '" + file.string() + "' is no results.json of schema " + std::to_string(kSchema) +
-                                              "; run `sconce bench` again."};
+        return Error{ErrorCode::badInput,
+                     fmt::format("File '{}' is no results.json of schema {}; run `sconce bench` again.", file.string(), kSchema)};
     return json;
 }
 

@@ -8,6 +8,8 @@
 
 #include <sys/resource.h>
 
+#include <fmt/format.h>
+
 #include "base/safe_file.h"
 #include "bench/race/ray_file.h"
 #include "bench/race/scene_rays.h"
@@ -69,8 +71,8 @@ Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string dev
         std::error_code problem;
         std::filesystem::create_directories(made->desc.folder / name, problem);
         if (problem)
-            return Error{ErrorCode::fileError, "The folder '" + made->desc.folder.string() + "' can't be made: " + problem.message() +
-                                                   "; give another one with -o."};
+            return Error{ErrorCode::fileError, fmt::format("The folder '{}' can't be made: {}; give another one with -o.",
+                                                           made->desc.folder.string(), problem.message())};
     }
     if (made->desc.camera)
         made->camera = *made->desc.camera;
@@ -144,7 +146,7 @@ Result<BenchProbes> SceneBench::probesFor(const PointSettings& settings, const P
     auto made = placeFor(desc.scene, settings, progress);
     if (!made) return made.error();
     if (made->set.probes.empty())
-        return Error{ErrorCode::badInput, "Placement " + made->name + " of scene '" + desc.name + "' has no probes; ask for more."};
+        return Error{ErrorCode::badInput, fmt::format("Placement {} of scene '{}' has no probes; ask for more.", made->name, desc.name)};
     const std::string key = keyOf(Json{{"build", desc.build}, {"scene", sceneKey}, {"set", made->name}});
     if (auto status = writeText(cached("probes", key, ".report.json"), made->report.dump()); !status) return status.error();
     if (auto status = saveProbes(made->set, cached("probes", key, ".json")); !status) return status.error();
@@ -249,7 +251,7 @@ Status SceneBench::writeReferencePictures()
     referenceJson["images"] = Json::object();
     for (const auto& [name, layer] : kLayers)
     {
-        const std::string file = "images/" + desc.name + ".reference." + name + ".half";
+        const std::string file = fmt::format("images/{}.reference.{}.half", desc.name, name);
         if (auto status =
                 writeHalfPicture(desc.folder / file, referenceImages.width, referenceImages.height, referenceImages.find(layer)->pixels);
             !status)
@@ -412,11 +414,11 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
 Result<Json> SceneBench::writePictures(const PlannedPoint& point, const RenderedFrame& frame)
 {
     Json json = Json::object();
-    const std::string stem = "images/" + desc.name + "." + point.settings.method + ".";
+    const std::string stem = fmt::format("images/{}.{}.", desc.name, point.settings.method);
     const ImageSet layers = lightLayers(frame);
     for (const auto& [name, layer] : kLayers)
     {
-        const std::string file = stem + name + ".half";
+        const std::string file = fmt::format("{}{}.half", stem, name);
         if (auto status = writeHalfPicture(desc.folder / file, frame.width, frame.height, layers.find(layer)->pixels); !status)
             return status.error();
         json[name] = file;
@@ -427,7 +429,7 @@ Result<Json> SceneBench::writePictures(const PlannedPoint& point, const Rendered
         std::vector<uint32_t> numbers;
         for (size_t i = 0; i < frame.counts.size(); ++i)
             numbers.push_back(frame.depth[i] > 0.0f ? frame.counts[i][part] : gpu::kNoProbe); // no surface: no count
-        const std::string file = stem + counts[part] + ".u32";
+        const std::string file = fmt::format("{}{}.u32", stem, counts[part]);
         if (auto status = writeNumberPicture(desc.folder / file, frame.width, frame.height, numbers); !status) return status.error();
         json[counts[part]] = file;
     }

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <type_traits>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -142,13 +144,13 @@ Result<PointSettings> settingsFrom(const std::string& method, const Json& json)
 {
     PointSettings settings;
     settings.method = method;
-    if (!json.is_object()) return Error{ErrorCode::badInput, "The settings of a point of method '" + method + "' are no object."};
+    if (!json.is_object()) return Error{ErrorCode::badInput, fmt::format("The settings of a point of method '{}' are no object.", method)};
     for (const auto& [name, value] : json.items())
     {
         const SweptKnob* knob = findKnob(name);
-        if (!knob || !has(*knob, method)) return Error{ErrorCode::badInput, "Method '" + method + "' has no knob '" + name + "'."};
+        if (!knob || !has(*knob, method)) return Error{ErrorCode::badInput, fmt::format("Method '{}' has no knob '{}'.", method, name)};
         if (!knob->set(settings, value.is_string() ? value.get<std::string>() : value.dump()))
-            return Error{ErrorCode::badInput, "Knob '" + name + "' can't be " + value.dump() + "; give " + knob->range + "."};
+            return Error{ErrorCode::badInput, fmt::format("Knob '{}' can't be {}; give {}.", name, value.dump(), knob->range)};
     }
     return settings;
 }

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "bench/race/traced_method.h"
 
 namespace sconce
@@ -87,8 +89,7 @@ public:
         done = referenceWeight;
         if (auto status = publish(); !status || pending.empty()) return status;
         if (auto status = bench.prepare(); !status) return status;
-        if (pending.front() != 0)
-            say(std::to_string(plan.size() - pending.size()) + " of " + std::to_string(plan.size()) + " points were measured before.");
+        if (pending.front() != 0) say(fmt::format("{} of {} points were measured before.", plan.size() - pending.size(), plan.size()));
         for (size_t at = 0; at < pending.size();)
         {
             std::vector<size_t> group;
@@ -165,7 +166,7 @@ private:
                                   {"value", plan[i].value},
                                   {"settings", settingsJson(plan[i].settings)},
                                   {"wrong", "Not measured: " + measured.error().message}};
-                say(plan[i].id + ": not measured: " + measured.error().message);
+                say(fmt::format("{}: not measured: {}", plan[i].id, measured.error().message));
                 if (auto status = publish(); !status) return status.error(); // not kept: tried again in a later run
                 continue;
             }

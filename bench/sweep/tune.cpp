@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 namespace
@@ -64,7 +66,7 @@ Result<Json> tune(const std::vector<Json>& points, const TuneGoal& goal)
         if (const auto figure = figureOf(*nearest, name))
             has.append(has.empty() ? "" : ", ").append(name).append(" ").append(number(*figure));
     return Error{ErrorCode::badInput,
-                 "No measured settings keep to that; the nearest, " + (*nearest)["id"].get<std::string>() + ", have " + has + "."};
+                 fmt::format("No measured settings keep to that; the nearest, {}, have {}.", (*nearest)["id"].get<std::string>(), has)};
 }
 
 Json qualityFile(const std::string& scene, const Json& point)
@@ -101,15 +103,15 @@ Result<PointSettings> loadQuality(const std::string& fileOrLevel)
     {
         std::string names;
         for (const QualityLevel& level : qualityLevels()) names.append(names.empty() ? "" : ", ").append(level.name);
-        return Error{ErrorCode::badArgument, "--quality: '" + fileOrLevel + "' is neither a file nor a level (" + names + ")."};
+        return Error{ErrorCode::badArgument, fmt::format("--quality: '{}' is neither a file nor a level ({}).", fileOrLevel, names)};
     }
     std::ifstream stream(fileOrLevel);
-    if (!stream) return Error{ErrorCode::fileError, "File '" + fileOrLevel + "' can't be read."};
+    if (!stream) return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read.", fileOrLevel)};
     const Json json = Json::parse(stream, nullptr, false);
     if (json.is_discarded() || !json.is_object() || json.value("quality", 0) != kQualityVersion || !json.contains("settings"))
-        return Error{ErrorCode::badInput, "File '" + fileOrLevel + "' holds no settings of `sconce tune`."};
+        return Error{ErrorCode::badInput, fmt::format("File '{}' holds no settings of `sconce tune`.", fileOrLevel)};
     Result<PointSettings> settings = settingsFrom("ours", json["settings"]);
-    if (!settings) return Error{settings.error().code, "File '" + fileOrLevel + "': " + settings.error().message};
+    if (!settings) return Error{settings.error().code, fmt::format("File '{}': {}", fileOrLevel, settings.error().message)};
     return settings;
 }
 

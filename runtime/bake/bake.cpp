@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "base/limits.h"
 #include "base/numbers.h"
 #include "base/parallel.h"
@@ -44,7 +46,7 @@ static_assert(knobs::kCharts[gpu::kChartCube] == "cube" && knobs::kCharts[gpu::k
 std::string argumentFault(std::span<const vec3> probes, const BakeSettings& settings)
 {
     if (settings.chart != gpu::kChartCube && settings.chart != gpu::kChartOctahedral)
-        return "chart is " + std::to_string(settings.chart) + "; give kChartCube or kChartOctahedral";
+        return fmt::format("chart is {}; give kChartCube or kChartOctahedral", settings.chart);
     const bool even = settings.chart == gpu::kChartCube && settings.resolution % 32 == 0; // faces with three levels of the chain
     if (const std::string fault = faultOf(knobs::resolution, settings.resolution); !fault.empty()) return fault;
     if (!even && !std::has_single_bit(settings.resolution))
@@ -54,15 +56,15 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     const std::string fault = firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
-        return "there are " + std::to_string(probes.size()) + " probes; give between 1 and " + std::to_string(kMostProbes);
+        return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
     for (size_t i = 0; i < probes.size(); ++i)
         if (!std::isfinite(probes[i].x + probes[i].y + probes[i].z))
-            return "probe " + std::to_string(i) + " has a position that is not finite; mend the list of probes";
+            return fmt::format("probe {} has a position that is not finite; mend the list of probes", i);
     if (settings.grid &&
         (glm::any(glm::lessThan(settings.grid->count, glm::ivec3(1))) ||
          size_t(settings.grid->count.x) * size_t(settings.grid->count.y) * size_t(settings.grid->count.z) != probes.size()))
-        return "the grid has " + std::to_string(settings.grid->count.x) + "x" + std::to_string(settings.grid->count.y) + "x" +
-               std::to_string(settings.grid->count.z) + " probes but there are " + std::to_string(probes.size());
+        return fmt::format("the grid has {}x{}x{} probes but there are {}", settings.grid->count.x, settings.grid->count.y,
+                           settings.grid->count.z, probes.size());
     return {};
 }
 
@@ -134,10 +136,9 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 ? 3 : 2) * light + (emitters ? light : 0);
     const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
     if (needed <= allowed) return success();
-    return Error{ErrorCode::outOfMemory, "A bake of " + std::to_string(field.probes.size()) + " probes with maps of " +
-                                             std::to_string(settings.resolution) + " texels takes about " + std::to_string(needed >> 20) +
-                                             " MiB of main memory, and it may have " + std::to_string(allowed >> 20) +
-                                             " MiB; give fewer probes or a lower resolution"};
+    return Error{ErrorCode::outOfMemory, fmt::format("A bake of {} probes with maps of {} texels takes about {} MiB of main memory, and it "
+                                                     "may have {} MiB; give fewer probes or a lower resolution",
+                                                     field.probes.size(), settings.resolution, needed >> 20, allowed >> 20)};
 }
 
 /// A bake in progress: the field and what the bounces need besides.
@@ -165,8 +166,7 @@ struct Bake
     Status cancelledIfAsked(std::string_view stage, size_t done, size_t count) const
     {
         if (report(progress, stage, double(done) / double(count))) return success();
-        return Error{ErrorCode::cancelled,
-                     "The bake was stopped at " + std::string(stage) + ", " + std::to_string(done) + " of " + std::to_string(count)};
+        return Error{ErrorCode::cancelled, fmt::format("The bake was stopped at {}, {} of {}", stage, done, count)};
     }
 
     Status directLight(ProbeBaker& baker);
@@ -217,7 +217,7 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     auto device = makeLightField(gpu, lit);
     field.distance = std::move(lit.distance);
     if (!device) return device.error();
-    const std::string stage = "bounce " + std::to_string(number);
+    const std::string stage = fmt::format("bounce {}", number);
     const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
@@ -243,7 +243,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
 {
     if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
     if (scene.triangles.empty())
-        return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no triangles; there is nothing to bake"};
+        return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
     Bake bake{{}, {}, {}, {}, {}, progress};
     BakeReport spent;
     Stopwatch watch;

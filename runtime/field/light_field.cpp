@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "runtime/vulkan/nan_scan.h"
 #include "shaders/shared/field_passes.h"
 
@@ -28,10 +30,9 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
 {
     const glm::uvec3 size = octree.textureSize();
     if (std::max({size.x, size.y, size.z}) > gpu.properties.limits.maxImageDimension3D)
-        return Error{ErrorCode::missingFeature, "the octree needs a 3D texture of " + std::to_string(std::max({size.x, size.y, size.z})) +
-                                                    " texels a side and the device allows " +
-                                                    std::to_string(gpu.properties.limits.maxImageDimension3D) +
-                                                    "; build it with fewer voxels"};
+        return Error{ErrorCode::missingFeature,
+                     fmt::format("the octree needs a 3D texture of {} texels a side and the device allows {}; build it with fewer voxels",
+                                 std::max({size.x, size.y, size.z}), gpu.properties.limits.maxImageDimension3D)};
     const bool narrow = octree.marker == 255;
     ImageDesc desc;
     desc.format = narrow ? VK_FORMAT_R8G8B8A8_UINT : VK_FORMAT_R16G16B16A16_UINT;

@@ -10,6 +10,7 @@
 #include <span>
 #include <type_traits>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <zstd.h>
 #define XXH_INLINE_ALL
@@ -113,9 +114,8 @@ template <class T> std::span<const std::byte> bytesOf(const T& value)
 
 std::string blockName(const Block& block)
 {
-    const std::string name =
-        block.section < sectionCount ? kSectionNames[block.section] : "unknown section " + std::to_string(block.section);
-    return block.section == meta || block.section == info || block.section == octree ? name : name + " " + std::to_string(block.chunk);
+    const std::string name = block.section < sectionCount ? kSectionNames[block.section] : fmt::format("unknown section {}", block.section);
+    return block.section == meta || block.section == info || block.section == octree ? name : fmt::format("{} {}", name, block.chunk);
 }
 
 /// a * b * ..., or nothing on overflow.
@@ -130,14 +130,14 @@ std::optional<uint64_t> product(std::initializer_list<uint64_t> factors)
 /// What is wrong with the sizes, as a sentence; empty when every array has the length that info and octree call for.
 std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, const uint64_t (&rawBytes)[sectionCount])
 {
-    if (i.chart != gpu::kChartCube && i.chart != gpu::kChartOctahedral) return "its chart " + std::to_string(i.chart) + " is unknown";
+    if (i.chart != gpu::kChartCube && i.chart != gpu::kChartOctahedral) return fmt::format("its chart {} is unknown", i.chart);
     if (i.faceSize < 8 || i.faceSize > 4096 || i.faceSize % 4 != 0)
-        return "its map size " + std::to_string(i.faceSize) + " is not a multiple of 4 from 8 to 4096";
-    if (i.probeCount > kMostProbes) return "its probe count " + std::to_string(i.probeCount) + " is above " + std::to_string(kMostProbes);
+        return fmt::format("its map size {} is not a multiple of 4 from 8 to 4096", i.faceSize);
+    if (i.probeCount > kMostProbes) return fmt::format("its probe count {} is above {}", i.probeCount, kMostProbes);
     if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize)) return "its words per probe disagree with its map size";
     if (i.chart == gpu::kChartCube && i.topLevel != coarsestLevel(i.faceSize)) return "its coarsest level disagrees with its map size";
     if (tree.marker != kMostProbesOf8Bits && tree.marker != kMostProbes)
-        return "its octree's marker " + std::to_string(tree.marker) + " is neither 255 nor 65535";
+        return fmt::format("its octree's marker {} is neither 255 nor 65535", tree.marker);
     const uint64_t n = i.probeCount;
     const std::optional<uint64_t> expected[sectionCount] = {
         rawBytes[meta],
@@ -156,8 +156,8 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         const bool optional =
             section == radiance || section == prefiltered || section == patches; // what no surface of the scene calls for is left out
         if (expected[section] != rawBytes[section] && !(optional && rawBytes[section] == 0))
-            return std::string("its section '") + kSectionNames[section] + "' has " + std::to_string(rawBytes[section]) +
-                   " bytes where its info calls for another size";
+            return fmt::format("its section '{}' has {} bytes where its info calls for another size", kSectionNames[section],
+                               rawBytes[section]);
     }
     return {};
 }
@@ -171,7 +171,7 @@ std::string octreeProblem(const FieldData& field)
         i.marker != tree.marker || glm::vec3(i.boundsLow) != tree.boundsLow || i.voxel != tree.voxel)
         return "its octree disagrees with its info";
     if (!(tree.voxel > 0.0f) || !std::isfinite(tree.voxel)) return "its octree's voxel is not a positive number";
-    if (tree.topShift < 0 || tree.topShift > 15) return "its octree's depth " + std::to_string(tree.topShift) + " is not from 0 to 15";
+    if (tree.topShift < 0 || tree.topShift > 15) return fmt::format("its octree's depth {} is not from 0 to 15", tree.topShift);
     uint64_t topBricks = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -205,12 +205,12 @@ std::string octreeProblem(const FieldData& field)
             if (t[3] == tree.marker)
             {
                 const uint64_t next = tree.marker == 255 ? t[0] + 256ull * t[1] + 65536ull * t[2] : t[0] + 65536ull * t[1];
-                if (level == 0) return "octree brick " + std::to_string(brick) + " goes on below the finest voxels";
-                if (next >= bricks) return "octree brick " + std::to_string(brick) + " points outside its texture";
+                if (level == 0) return fmt::format("octree brick {} goes on below the finest voxels", brick);
+                if (next >= bricks) return fmt::format("octree brick {} points outside its texture", brick);
                 reach(next, level - 1);
             }
             else if (std::max({t[0], t[1], t[2], t[3]}) >= field.probes.size())
-                return "octree brick " + std::to_string(brick) + " names a probe that is not there";
+                return fmt::format("octree brick {} names a probe that is not there", brick);
         }
     }
     return {};
@@ -224,7 +224,7 @@ std::string contentProblem(const FieldData& field)
         !finite(i.sky))
         return "its info holds a number that is not finite";
     for (size_t p = 0; p < field.probes.size(); ++p)
-        if (!finite(field.probes[p].centre)) return "the centre of probe " + std::to_string(p) + " is not finite";
+        if (!finite(field.probes[p].centre)) return fmt::format("the centre of probe {} is not finite", p);
     if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
         return "its scene bounds are not finite";
     const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
@@ -323,17 +323,17 @@ public:
         stream.clear();
         stream.seekg(std::streamoff(offset));
         stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-        if (!stream) return failure("reading " + std::to_string(bytes.size()) + " bytes at offset " + std::to_string(offset) + " failed");
+        if (!stream) return failure(fmt::format("reading {} bytes at offset {} failed", bytes.size(), offset));
         return success();
     }
 
     Error failure(const std::string& reason) const
     {
-        return {ErrorCode::fileError, "Cannot read light field '" + name + "': " + reason + "."};
+        return {ErrorCode::fileError, fmt::format("Cannot read light field '{}': {}.", name, reason)};
     }
     Error damage(const std::string& what) const
     {
-        return {ErrorCode::badInput, "Light field '" + name + "' is damaged: " + what + ". Bake it again or restore it from a copy."};
+        return {ErrorCode::badInput, fmt::format("Light field '{}' is damaged: {}. Bake it again or restore it from a copy.", name, what)};
     }
 
     std::string name;
@@ -357,7 +357,7 @@ std::string tableProblem(const Table& table, uint64_t fileBytes)
     for (const Block& block : table.blocks)
     {
         // Sections in order and without gaps: no byte of the file is left that no checksum covers.
-        const std::string name = "block '" + blockName(block) + "'";
+        const std::string name = fmt::format("block '{}'", blockName(block));
         if (block.section >= sectionCount || block.section < section) return name + " is not where it belongs";
         chunk = block.section == section ? chunk : 0;
         section = block.section;
@@ -387,7 +387,7 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
     };
 
     if (reader.size < sizeof(Header))
-        return damaged("header", 0, reader.size, "it has " + std::to_string(reader.size) + " bytes, fewer than a header");
+        return damaged("header", 0, reader.size, fmt::format("it has {} bytes, fewer than a header", reader.size));
     if (Status status = reader.read(0, std::as_writable_bytes(std::span(&table.header, 1))); !status) return status.error();
     const Header& header = table.header;
     // Magic and checksum first: no field of the header is believed before them.
@@ -398,17 +398,15 @@ Result<Table> readTable(Reader& reader, VerifyReport& report)
     report.version = header.version;
     if (header.version < kOldestFieldFileVersion || header.version > kFieldFileVersion)
     {
-        row("header", 0, sizeof(Header), "format version " + std::to_string(header.version));
+        row("header", 0, sizeof(Header), fmt::format("format version {}", header.version));
         return Error{ErrorCode::badInput,
-                     "Light field '" + reader.name + "' has format version " + std::to_string(header.version) +
-                         "; this program reads versions " + std::to_string(kOldestFieldFileVersion) + " to " +
-                         std::to_string(kFieldFileVersion) +
-                         (header.version > kFieldFileVersion ? ". Use a newer Sconce, or bake it again." : ". Bake it again.")};
+                     fmt::format("Light field '{}' has format version {}; this program reads versions {} to {}{}", reader.name,
+                                 header.version, kOldestFieldFileVersion, kFieldFileVersion,
+                                 header.version > kFieldFileVersion ? ". Use a newer Sconce, or bake it again." : ". Bake it again.")};
     }
     if (header.fileBytes != reader.size)
         return damaged("header", 0, sizeof(Header),
-                       "it has " + std::to_string(reader.size) + " bytes instead of " + std::to_string(header.fileBytes) +
-                           "; it was cut short or added to");
+                       fmt::format("it has {} bytes instead of {}; it was cut short or added to", reader.size, header.fileBytes));
     row("header", 0, sizeof(Header), "");
 
     // A table of made-up length must not be allocated: it is held against the file's size.
@@ -438,14 +436,14 @@ Status readBlock(Reader& reader, const Block& block, Bytes& stored, std::span<st
 {
     stored.resize(block.storedBytes);
     if (Status status = reader.read(block.offset, stored); !status) return status;
-    if (checksum(stored) != block.checksum) return reader.damage("block '" + blockName(block) + "' does not match its checksum");
+    if (checksum(stored) != block.checksum) return reader.damage(fmt::format("block '{}' does not match its checksum", blockName(block)));
     if (block.codec == Codec::raw)
     {
         std::ranges::copy(stored, raw.begin());
         return success();
     }
     const size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size) || size != raw.size()) return reader.damage("block '" + blockName(block) + "' cannot be decompressed");
+    if (ZSTD_isError(size) || size != raw.size()) return reader.damage(fmt::format("block '{}' cannot be decompressed", blockName(block)));
     return success();
 }
 
@@ -493,7 +491,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     }
     std::string problem = sizeProblem(field.info, treeHeader, rawBytes);
     if (problem.empty()) problem = contentProblem(field);
-    if (!problem.empty()) return Error{ErrorCode::badArgument, "The light field cannot be written: " + problem + "."};
+    if (!problem.empty()) return Error{ErrorCode::badArgument, fmt::format("The light field cannot be written: {}.", problem)};
 
     Result<SafeFile> file = SafeFile::create(path);
     if (!file) return file.error();
@@ -533,7 +531,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     const auto readInto = [&](Section section, std::span<std::byte> raw) -> Status
     {
         if (rawBytes[section] != raw.size())
-            return reader->damage(std::string("its section '") + kSectionNames[section] + "' has the wrong size");
+            return reader->damage(fmt::format("its section '{}' has the wrong size", kSectionNames[section]));
         for (const Block& block : table->blocks)
         {
             if (block.section != section) continue;
@@ -612,7 +610,7 @@ template <class Function> auto guarded(const std::filesystem::path& path, Functi
     catch (const std::bad_alloc&)
     {
         return Error{ErrorCode::outOfMemory,
-                     "Light field '" + path.string() + "' does not fit into memory; bake fewer probes or a lower resolution."};
+                     fmt::format("Light field '{}' does not fit into memory; bake fewer probes or a lower resolution.", path.string())};
     }
 }
 

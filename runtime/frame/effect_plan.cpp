@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "runtime/field/field_data.h"
 
 namespace sconce
@@ -15,7 +17,7 @@ constexpr size_t kImageBytes = 16; // a pixel of an RGBA32F image
 
 std::string bytes(size_t count, const char* of)
 {
-    return std::to_string(count) + " bytes a " + of;
+    return fmt::format("{} bytes a {}", count, of);
 }
 
 /// What an effect costs, in passes, images, and bytes of the field; milliseconds depend on machine and picture: `sconce render` prints
@@ -27,16 +29,16 @@ std::string costOf(std::string_view name)
     if (name == "punctual") return "Six shadow maps a light, and a look-up a light and pixel.";
     if (name == "emitters" || name == "sky") return "Shadow maps of its samples, and 8 look-ups a diffuse pixel; the bake's light.";
     if (name == "diffuse")
-        return "A pass over diffuse tiles of at most 4 probes a look-up, a filter, " + bytes(2 * kImageBytes, "pixel") + ", " +
-               bytes((kIrradianceWordsPerProbe + 2 * gpu::kPatches) * sizeof(uint32_t), "probe") + ".";
+        return fmt::format("A pass over diffuse tiles of at most 4 probes a look-up, a filter, {}, {}.", bytes(2 * kImageBytes, "pixel"),
+                           bytes((kIrradianceWordsPerProbe + 2 * gpu::kPatches) * sizeof(uint32_t), "probe"));
     if (name == "rough")
-        return "12 reads more a probe of the diffuse pass, " + bytes(kImageBytes, "pixel") + ", " +
-               bytes(gpu::kPrefilteredWords * sizeof(uint32_t), "probe") + ".";
+        return fmt::format("12 reads more a probe of the diffuse pass, {}, {}.", bytes(kImageBytes, "pixel"),
+                           bytes(gpu::kPrefilteredWords * sizeof(uint32_t), "probe"));
     if (name == "glossy")
-        return "A ray a pixel of glossy tiles of about 20 distance reads, " + bytes(kImageBytes, "pixel") + ", " +
-               bytes(radiance, "probe") + " at faces of 256 texels.";
-    if (name == "mirror") return "A ray a pixel of mirroring tiles, " + bytes(kImageBytes, "pixel") + "; the radiance of glossy.";
-    if (name == "denoise") return "Four filter passes over glossy tiles, " + bytes(kImageBytes, "pixel") + ".";
+        return fmt::format("A ray a pixel of glossy tiles of about 20 distance reads, {}, {} at faces of 256 texels.",
+                           bytes(kImageBytes, "pixel"), bytes(radiance, "probe"));
+    if (name == "mirror") return fmt::format("A ray a pixel of mirroring tiles, {}; the radiance of glossy.", bytes(kImageBytes, "pixel"));
+    if (name == "denoise") return fmt::format("Four filter passes over glossy tiles, {}.", bytes(kImageBytes, "pixel"));
     if (name == "masked") return "A texture read a pixel where something is cut out, in G-buffer, bake and shadow maps.";
     return "The back faces of what is closed are drawn, too: up to twice the triangles; no light of its own.";
 }
@@ -155,7 +157,7 @@ Result<EffectPlan> planEffects(const SceneReport& scene, std::string_view wanted
                 names += names.empty() ? "" : ", ";
                 names += effect.name;
             }
-            return Error{ErrorCode::badArgument, "effects: '" + name + "' is not auto, all, none, or one of " + names + "."};
+            return Error{ErrorCode::badArgument, fmt::format("effects: '{}' is not auto, all, none, or one of {}.", name, names)};
         }
     }
     for (PlannedEffect& effect : plan.effects)

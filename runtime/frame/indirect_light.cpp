@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include <fmt/format.h>
+
 #include "runtime/frame/environment_brdf.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/gather_light_comp.h"
@@ -19,8 +21,7 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
 {
     const uint32_t most = gpu.properties.limits.maxImageDimension2D;
     if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
-        return "frame size " + std::to_string(desc.width) + "x" + std::to_string(desc.height) + " is outside 1.." + std::to_string(most) +
-               " pixels a side";
+        return fmt::format("frame size {}x{} is outside 1..{} pixels a side", desc.width, desc.height, most);
     if (const std::string fault = faultOf(knobs::traceEvery, desc.traceEvery); !fault.empty()) return fault;
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";

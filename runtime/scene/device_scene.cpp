@@ -4,6 +4,8 @@
 #include <cstring>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/shadow_masked_frag.h"
 #include "spirv/shadow_masked_vert.h"
@@ -129,7 +131,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
                                         const Progress& progress)
 {
     if (scene.triangles.empty())
-        return Error{ErrorCode::badInput, "The scene '" + scene.name + "' has no triangles; there is nothing to light"};
+        return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to light", scene.name)};
     if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     if (const std::string fault = settingsFault(desc); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     const uint64_t before = gpu.memory().used();

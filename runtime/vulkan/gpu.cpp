@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "runtime/vulkan/nan_scan.h"
 
 namespace sconce
@@ -30,10 +32,10 @@ VkImageAspectFlags GpuImage::aspect() const
 Error Gpu::failure(const char* call, VkResult result) const
 {
     const bool memoryLost = result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
-    return {
-        memoryLost ? ErrorCode::outOfMemory : ErrorCode::deviceFailure,
-        std::string(call) + " failed on " + properties.deviceName + " with VkResult " + std::to_string(result) +
-            (memoryLost ? "; free memory or lower the resolution" : "; check the driver, and run with SCONCE_VALIDATION=1 for the cause")};
+    return {memoryLost ? ErrorCode::outOfMemory : ErrorCode::deviceFailure,
+            fmt::format("{} failed on {} with VkResult {}{}", call, properties.deviceName, int(result),
+                        memoryLost ? "; free memory or lower the resolution"
+                                   : "; check the driver, and run with SCONCE_VALIDATION=1 for the cause")};
 }
 
 Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
@@ -48,7 +50,7 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     if (!gpu->vk.name) absent = "vk" #name;
     SCONCE_DEVICE_FUNCTIONS(SCONCE_LOAD)
 #undef SCONCE_LOAD
-    if (absent) return Error{ErrorCode::missingFeature, std::string("The host's device has no ") + absent + "; create it for Vulkan 1.3"};
+    if (absent) return Error{ErrorCode::missingFeature, fmt::format("The host's device has no {}; create it for Vulkan 1.3", absent)};
     const auto instanceProc = [&](const char* name) { return host.getInstanceProcAddr(host.instance, name); };
     reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instanceProc("vkGetPhysicalDeviceProperties"))(host.physicalDevice,
                                                                                                        &gpu->properties);
@@ -59,8 +61,8 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     std::vector<VkQueueFamilyProperties> family(familyCount);
     families(host.physicalDevice, &familyCount, family.data());
     if (host.queueFamily >= familyCount)
-        return Error{ErrorCode::badArgument, "HostVulkan::queueFamily is " + std::to_string(host.queueFamily) + " but the device has " +
-                                                 std::to_string(familyCount) + " families"};
+        return Error{ErrorCode::badArgument,
+                     fmt::format("HostVulkan::queueFamily is {} but the device has {} families", host.queueFamily, familyCount)};
     gpu->timestamps = family[host.queueFamily].timestampValidBits > 0;
     gpu->pool = std::make_unique<GpuMemory>(gpu->host, gpu->vk);
 
@@ -124,9 +126,8 @@ Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
 {
     const VkDeviceSize texels = buffer.size() / 16;
     if (texels > properties.limits.maxTexelBufferElements)
-        return Error{ErrorCode::missingFeature, std::string(buffer.what()) + " need a buffer of " + std::to_string(texels) +
-                                                    " texels; the device allows " +
-                                                    std::to_string(properties.limits.maxTexelBufferElements) + "; bake fewer probes"};
+        return Error{ErrorCode::missingFeature, fmt::format("{} need a buffer of {} texels; the device allows {}; bake fewer probes",
+                                                            buffer.what(), texels, properties.limits.maxTexelBufferElements)};
     VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
     info.buffer = buffer.handle();
     info.format = format;
@@ -150,10 +151,10 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     // Asked here because the driver need not: beyond its limits vkCreateImage is undefined, not refused.
     const uint32_t side = volume ? limits.maxImageDimension3D : limits.maxImageDimension2D;
     if (std::max({desc.width, desc.height, desc.depth}) > side || desc.layers > limits.maxImageArrayLayers)
-        return Error{ErrorCode::missingFeature, std::string(what) + " needs an image of " + std::to_string(desc.width) + " x " +
-                                                    std::to_string(desc.height) + " x " + std::to_string(desc.depth) + " texels and " +
-                                                    std::to_string(desc.layers) + " layers; the device allows " + std::to_string(side) +
-                                                    " and " + std::to_string(limits.maxImageArrayLayers) + "; lower the resolution"};
+        return Error{
+            ErrorCode::missingFeature,
+            fmt::format("{} needs an image of {} x {} x {} texels and {} layers; the device allows {} and {}; lower the resolution", what,
+                        desc.width, desc.height, desc.depth, desc.layers, side, limits.maxImageArrayLayers)};
     GpuImage made;
     made.made = desc;
     made.name = what;

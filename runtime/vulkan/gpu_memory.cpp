@@ -4,6 +4,8 @@
 #include <cassert>
 #include <optional>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
@@ -15,7 +17,7 @@ constexpr VkDeviceSize kLargeBytes = kBlockBytes / 4; // from here on a resource
 
 std::string mebibytes(uint64_t bytes)
 {
-    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+    return fmt::format("{} MiB", (bytes + (1u << 20) - 1) >> 20);
 }
 
 } // namespace
@@ -119,9 +121,11 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
 {
     const auto refused = [&](const char* by)
     {
-        return Error{ErrorCode::outOfMemory, std::string(what) + " needs " + mebibytes(asked) + " of device memory; " +
-                                                 mebibytes(heldBytes) + " of " + mebibytes(budgetBytes) + " are in use and " + by +
-                                                 " refused more; lower the resolution or raise the memory budget"};
+        return Error{
+            ErrorCode::outOfMemory,
+            fmt::format(
+                "{} needs {} of device memory; {} of {} are in use and {} refused more; lower the resolution or raise the memory budget",
+                what, mebibytes(asked), mebibytes(heldBytes), mebibytes(budgetBytes), by)};
     };
     if (heldBytes + size > budgetBytes) return refused("the budget");
     // Every buffer has a device address, and its memory must have been allocated for that; images need none.
@@ -161,8 +165,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
 Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear, const char* what)
 {
     const int type = memoryType(needs.memoryTypeBits, use);
-    if (type < 0)
-        return Error{ErrorCode::missingFeature, std::string("The device has no memory type for ") + what + "; choose another device"};
+    if (type < 0) return Error{ErrorCode::missingFeature, fmt::format("The device has no memory type for {}; choose another device", what)};
     const bool mapped = use != MemoryUse::device;
     // Memory types, buffers or images, mapped or not: blocks are kept apart by all three.
     if (needs.size < kLargeBytes)

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <span>
 
+#include <fmt/format.h>
+
 namespace sconce
 {
 
@@ -99,13 +101,12 @@ int preference(VkPhysicalDeviceType type)
 
 std::string versionText(uint32_t version)
 {
-    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
-           std::to_string(VK_API_VERSION_PATCH(version));
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
 }
 
 Error vulkanError(const char* call, VkResult result, const char* remedy)
 {
-    return {ErrorCode::deviceFailure, std::string(call) + " failed with VkResult " + std::to_string(result) + "; " + remedy};
+    return {ErrorCode::deviceFailure, fmt::format("{} failed with VkResult {}; {}", call, int(result), remedy)};
 }
 
 std::vector<VkPhysicalDevice> devicesOf(VkInstance instance)
@@ -195,13 +196,13 @@ Result<VkPhysicalDevice> chooseDevice(VkInstance instance, const std::string& wa
     for (size_t i = 0; i < devices.size(); ++i)
     {
         const VkPhysicalDeviceProperties properties = propertiesOf(instance, devices[i]);
-        names += (i ? ", " : "") + std::to_string(i) + " " + properties.deviceName;
+        names += fmt::format("{}{} {}", i ? ", " : "", i, properties.deviceName);
         if (isIndex ? i != index : !wanted.empty() && !std::strstr(properties.deviceName, wanted.c_str())) continue;
         if (preference(properties.deviceType) <= bestPreference) continue;
         best = devices[i];
         bestPreference = preference(properties.deviceType);
     }
-    if (!best) return Error{ErrorCode::badArgument, "No Vulkan device matches '" + wanted + "'; there are: " + names};
+    if (!best) return Error{ErrorCode::badArgument, fmt::format("No Vulkan device matches '{}'; there are: {}", wanted, names)};
     return best;
 }
 
@@ -216,7 +217,7 @@ std::vector<std::string> missingFeatures(PFN_vkGetInstanceProcAddr getProc, VkIn
     if (usableFamily(getProc, instance, device, timestamps) < 0) missing.push_back("a queue family with graphics and compute");
     if (properties.apiVersion < kApiVersion)
     {
-        missing.push_back("Vulkan 1.3 (it has " + versionText(properties.apiVersion) + ")");
+        missing.push_back(fmt::format("Vulkan 1.3 (it has {})", versionText(properties.apiVersion)));
         return missing; // the 1.3 feature struct is unknown to it
     }
     FeatureChain features;
@@ -302,8 +303,8 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
     {
         std::string list;
         for (const std::string& name : missing) list += (list.empty() ? "" : ", ") + name;
-        return Error{ErrorCode::missingFeature, std::string("The device ") + propertiesOf(host.instance, *chosen).deviceName + " lacks " +
-                                                    list + "; update its driver or choose another device"};
+        return Error{ErrorCode::missingFeature, fmt::format("The device {} lacks {}; update its driver or choose another device",
+                                                            propertiesOf(host.instance, *chosen).deviceName, list)};
     }
     bool timestamps = false;
     host.queueFamily = uint32_t(usableFamily(vkGetInstanceProcAddr, host.instance, *chosen, timestamps));
@@ -339,7 +340,7 @@ Result<std::vector<DeviceSummary>> deviceSummary()
         DeviceSummary summary;
         summary.name = properties.properties.deviceName;
         summary.kind = kindName(properties.properties.deviceType);
-        summary.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+        summary.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
         summary.apiVersion = versionText(properties.properties.apiVersion);
         for (const VkMemoryHeap& heap : std::span(memory.memoryHeaps, memory.memoryHeapCount))
             if (heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) summary.heapBytes = std::max<uint64_t>(summary.heapBytes, heap.size);

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "spirv/nan_scan_comp.h"
 
 namespace sconce
@@ -158,21 +160,20 @@ Status NanScan::findings()
     {
         if (place[i] == kNoPlace) continue;
         const Scan& scan = scans[i];
-        first = std::string("The pass '") + scan.pass + "' left a number that is NaN or infinite in '" + scan.what + "', first at ";
+        first = fmt::format("The pass '{}' left a number that is NaN or infinite in '{}', first at ", scan.pass, scan.what);
         if (scan.width == 0)
-            first += "word " + std::to_string(place[i]);
+            first += fmt::format("word {}", place[i]);
         else
         {
             const uint32_t pixel = place[i] / scan.wordsAPixel;
             const uint32_t row = pixel / scan.width;
-            first += "pixel (" + std::to_string(pixel % scan.width) + ", " + std::to_string(row % scan.height) + ")" +
-                     (scan.layers > 1 ? " of layer " + std::to_string(row / scan.height) : "") + ", word " +
-                     std::to_string(place[i] % scan.wordsAPixel) + " of it";
+            first += fmt::format("pixel ({}, {}){}, word {} of it", pixel % scan.width, row % scan.height,
+                                 scan.layers > 1 ? fmt::format(" of layer {}", row / scan.height) : "", place[i] % scan.wordsAPixel);
         }
     }
     if (first.empty() && tooMany)
-        first = "More than " + std::to_string(kScans) +
-                " scans for NaN were recorded for one submit; the later ones were left out. Submit less at once";
+        first = fmt::format("More than {} scans for NaN were recorded for one submit; the later ones were left out. Submit less at once",
+                            kScans);
     std::memset(places.mapped(), 0xff, scans.size() * sizeof(uint32_t));
     scans.clear();
     tooMany = false;
