@@ -99,6 +99,7 @@ void squaredTransform(std::vector<float>& squared, glm::ivec3 size)
 
 DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>& presence, const Bounds& box, uint32_t voxels)
 {
+    // OpenVDB must register its types before its first use, and fields may be built on several threads.
     static std::once_flag initialised;
     std::call_once(initialised, [] { openvdb::initialize(); });
 
@@ -130,6 +131,7 @@ DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>
         if (!flat && !apart) near.push_back(triangle);
     }
     const IndexSpaceTriangles mesh(scene, field, std::move(near));
+    // Unsigned: real assets are not watertight, so that no side of a surface is its inside.
     const auto band = openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, *openvdb::math::Transform::createLinearTransform(1.0),
                                                                        kExactBand, kExactBand, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
 
@@ -159,6 +161,7 @@ DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>
     tbb::parallel_for(size_t(0), cells,
                       [&](size_t at)
                       {
+                          // What OpenVDB left out is at least the band away; the far field, up to a cell off, may say less.
                           const float cellsAway = exact[at] < kExactBand ? exact[at] : std::max(std::sqrt(field.distance[at]), kExactBand);
                           // No surface in the whole box: everything in it is as free as it can be.
                           field.distance[at] = field.voxel * std::min(cellsAway, float(glm::length(vec3(field.size))));

@@ -153,6 +153,7 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
 {
     if (settings.refine == Refine::none || positions.empty() || targets.size() == 0) return success();
     Views views(legal.visibility, targets, positions);
+    // Worse positions are accepted at times, so that the last set may not be the best one met.
     std::vector<vec3> best = positions;
     uint64_t bestFitness = views.fitness();
     float step = settings.step > 0.0f ? settings.step : 0.25f * targets.spacing;
@@ -194,8 +195,10 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
                 // The corners are rated already: the best of them stands in for a draw that is worse.
                 if (drawn.gain > proposal->gain) proposal = &drawn;
             }
+            // No gain is also what an illegal position has.
             if (proposal->gain == 0) continue;
             bool accepted = proposal->gain > present;
+            // A worse one at times, or a probe stays at the first local best. A present gain of 0 has no worse one, and no ratio.
             if (!accepted && settings.refine != Refine::gradient && present > 0)
                 accepted = random.uniform() < std::pow(float(proposal->gain) / float(present), kSharpness);
             if (!accepted) continue;

@@ -190,8 +190,10 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
 {
     const float clearance = settings.clearance > 0.0f ? settings.clearance : space.field.voxel;
     report.clearance = clearance;
+    // Pinned probes are never moved, so a place that no probe may take is refused here rather than mended later.
     const LegalSpace legal{visibility, space, settings.pins};
     if (const std::string fault = faultOfPins(legal, clearance); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    // Ahead of all others: every step below takes the first so many candidates as chosen and leaves them where they are.
     std::vector<Candidate> candidates = pinnedCandidates(settings.pins);
     const size_t pinned = candidates.size();
     // Kept probes are among those asked for, added ones stand beside them.
@@ -242,6 +244,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     const std::vector<uint8_t> bestOfAll = bestValues(table, all);
     report.candidates = candidates.size();
     report.bestPossible = shareSeen(bestOfAll, targets.weights);
+    // Only now, since the candidates before gaps count, too.
     if (count > candidates.size())
         return Error{ErrorCode::badArgument,
                      fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
@@ -271,6 +274,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
             target = std::min(report.bestPossible, target + std::max(settings.coverage - measured->rays, 1e-4f));
             choose(target);
         }
+        // A count is bounded by its knob; a coverage may need any number.
         if (chosen.size() > kMostProbes)
             return Error{ErrorCode::badInput, fmt::format("A coverage of {} needs {} probes, more than {}; lower the coverage.",
                                                           settings.coverage, chosen.size(), kMostProbes)};

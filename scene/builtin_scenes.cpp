@@ -96,6 +96,7 @@ Scene makeTemple()
     for (int i = 1; i < 8; ++i)
         for (const float x : {-6.4f, 6.4f}) addColumn(mesh, {x, top, -10.4f + 2.6f * float(i)}, height, stone);
 
+    // Later steps win: the room is carved when stone and paint stand, or the fills would close it.
     BlockSolid cella;
     cella.fill({-4.2f, top, -7.8f}, {4.2f, top + 5.6f, 7.0f}, stone);
     cella.fill({-4.0f, top, -7.6f}, {4.0f, top + 5.6f, 6.8f}, plaster); // paint of 0.2 m inside a stone skin of the same
@@ -147,6 +148,7 @@ Scene makeHall()
     const uint32_t amber = mesh.emitter("amber lamp", vec3(20.0f, 8.0f, 1.5f));
 
     // Hall x [0,24], z [0,9], y [0,7]; corridor x [24.3,26.8] along z [-12,9], its far end lies around the corner.
+    // Each step wins over those before: rooms are carved from filled blocks, and what stands in the rooms is filled last.
     BlockSolid shell;
     shell.fill({-0.3f, -0.3f, -0.3f}, {24.3f, 7.3f, 9.3f}, paint);
     shell.fill({24.3f, -0.3f, -12.3f}, {27.1f, 3.3f, 9.3f}, red);

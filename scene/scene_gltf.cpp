@@ -504,6 +504,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
     if (!primitive.targets.empty()) note("Morph targets are ignored; meshes stand in their rest shape.");
     if (primitive.attributes.count("COLOR_0")) note("Vertex colours are ignored.");
 
+    // Before vertices are read: the material may hide them all by its alpha, and it names the set of texture coordinates.
     auto material = materialOf(primitive.material);
     if (!material) return material.error();
     const auto corners = indicesOf(primitive, positions->count, owner);
@@ -514,6 +515,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
     const Material& surface = scene.materials[*material];
     if (surface.alphaCutoff > 0.0f && surface.baseColorTexture.image < 0 && surface.baseColor.a < surface.alphaCutoff)
     {
+        // An empty piece is kept, so that each of its instances is counted among the triangles that are told of as hidden.
         piece.hidden = piece.triangles.size(); // never there, by its constant alpha
         piece.triangles.clear();
         out.push_back(std::move(piece));
@@ -528,6 +530,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
         if (it == primitive.attributes.end()) return success();
         auto found = view(it->second, components, owner);
         if (!found) return found.error();
+        // The indices are checked against the positions alone: a shorter attribute would be read past its end.
         if (found->count < positions->count)
             return bad(fmt::format("{} has {} of {} for {} vertices; export the file again.", owner, found->count, name, positions->count));
         into = std::move(*found);
@@ -551,6 +554,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
         if (!finite(position)) return bad(fmt::format("{} has a position that is not finite at vertex {}; mend the mesh.", owner, vertex));
         vec2 uv(0.0f);
         if (uvs) uv = {float(uvs->component(vertex, 0)), float(uvs->component(vertex, 1))};
+        // Mended rather than refused: unlike a position it spoils no more than a texture.
         if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
         {
             note("Texture coordinates that are not finite were set to 0.");
@@ -700,9 +704,11 @@ Status Importer::place(const Piece& piece, const dmat4& world)
     std::vector<vec3> positions(piece.positions.size());
     for (size_t i = 0; i < positions.size(); ++i)
     {
+        // Numbers that are finite in the file may be beyond a float's range as a product.
         positions[i] = vec3(world * glm::dvec4(piece.positions[i], 1.0));
         if (!finite(positions[i])) return bad("A mesh instance has a world position that is not finite; mend the nodes' transforms.");
     }
+    // Filled as triangles ask: a vertex of degenerate ones alone doesn't enter the scene.
     std::vector<uint32_t> placed(positions.size(), kNone); // our vertex of each
     const auto vertex = [&](uint32_t from, vec3 normal)
     {
@@ -735,6 +741,7 @@ Status Importer::place(const Piece& piece, const dmat4& world)
             uint32_t& known = placed[t[i]];
             if (known == kNone)
             {
+                // The cofactor matrix has the determinant's sign and turns normals over where that is negative.
                 const dvec3 normal = cofactor * dvec3(piece.normals[t[i]]) * (mirrored ? -1.0 : 1.0);
                 const double length = glm::length(normal);
                 const bool usable = length > 0.0 && std::isfinite(length);

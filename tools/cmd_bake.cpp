@@ -45,11 +45,14 @@ int runBake(const BakeOptions& options, const Context& context)
         options.quality.take("--bounces", settings.bounces, (*quality)->bounces);
         settings.octree.voxels = (*quality)->octreeVoxels;
     }
+    // The field must say that it is a grid: its probes are then found by a formula, and the bake moves none of them.
     settings.grid = set->grid;
     const RenderSettings frame = *quality ? (*quality)->frame : RenderSettings(); // that the field is for
+    // By the frames that the field is for: from which roughness on they trace no rays says what the field must keep.
     const Result<EffectPlan> plan = planEffects(checkScene(*scene, frame.raysBelow), options.effects);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
+    // After the plan, which asks what the whole scene calls for; what it gives up must leave no light in the field.
     capScene(*scene, *plan);
     settings.take(*plan, frame.effects.tracedDiffuse);
     std::vector<vec3> positions;

@@ -48,6 +48,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     if (*quality)
     {
         options.quality.take("--resolution", resolution, (*quality)->resolution);
+        // A budget or a grid decides the number of probes by itself.
         if ((*quality)->probes > 0 && options.memory == 0 && settings.method != PlaceSettings::Method::grid)
             options.quality.take("--count", settings.count, (*quality)->probes);
     }
@@ -62,6 +63,8 @@ int runPlace(const PlaceOptions& options, const Context& context)
         Result<std::vector<Pin>> pins = loadPins(options.pins);
         if (!pins) return fail(pins.error());
         settings.pins = std::move(*pins);
+        // Added probes stand beside the count, so the budget's count must leave room for them. It may not fall to 0, which would ask for as
+        // many as the coverage takes.
         const auto added =
             std::count_if(settings.pins.begin(), settings.pins.end(), [](const Pin& pin) { return pin.kind == Pin::Kind::add; });
         if (options.memory > 0 && uint64_t(added) >= settings.count)
@@ -79,6 +82,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     if (set->scene.empty()) set->scene = scene->name;
     if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());
 
+    // After the probes, which are then safe whatever becomes of the picture.
     if (!options.explain.empty())
         if (Status status = writePng(report.picture.rgb, report.picture.width, report.picture.height, options.explain); !status)
             return fail(status.error());
@@ -117,6 +121,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
 void addPlaceCommand(CLI::App& app, Context& context)
 {
     CLI::App* command = addCommand(app, context, "place", "Decides where the probes of a scene go and writes probes.json");
+    // Shared: the line is parsed after this returns, and onChosen() keeps the options alive for the functions below.
     auto options = std::make_shared<PlaceOptions>();
     PlaceSettings& settings = options->settings;
     options->scene.add(command);
@@ -128,6 +133,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
             [&settings](const std::string& text)
             {
                 const Result<std::vector<uint32_t>> n = parseSize(text, 3);
+                // As CLI11's own error, so that it ends as a usage error like those of all other options.
                 if (!n) throw CLI::ValidationError("--grid", n.error().message);
                 settings.grid = {int((*n)[0]), int((*n)[1]), int((*n)[2])};
                 settings.method = PlaceSettings::Method::grid;
@@ -136,6 +142,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
                       "in all " + rangeText(knobs::count)))
         ->type_name("NxNxN");
     CLI::Option* count = addKnob(command, "--count", settings.count, knobs::count);
+    // A budget is a count said in bytes: given both, one would have to be ignored.
     addKnob(command, "--memory", options->memory, knobs::mapBytes, "BYTES")->excludes(count);
     addKnob(command, "--resolution", options->resolution, knobs::resolution, "TEXELS",
             "That the field will be baked with; only --memory asks");
@@ -161,6 +168,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
             },
             described("A point in the space that counts, metres; may be given again",
                       words("the cameras, else the largest enclosed region")))
+        // One value each time, or the option would take the arguments that follow it for more points.
         ->expected(1)
         ->take_all()
         ->type_name("X,Y,Z");

@@ -71,6 +71,7 @@ int runCompare(const CompareOptions& options, const Context& context)
     settings.exposure = options.exposure;
     std::map<std::string, bool*> wanted{
         {"mse", &settings.mse}, {"relmse", &settings.relMse}, {"psnr", &settings.psnr}, {"flip", &settings.flip}};
+    // All metrics are on by default, but a list means no others.
     for (auto& [name, flag] : wanted) *flag = false;
     for (const std::string& name : split(options.metrics, ','))
     {
@@ -86,6 +87,7 @@ int runCompare(const CompareOptions& options, const Context& context)
         if (parts.size() != 2 || !wanted.contains(parts[0]) || !value)
             return fail(ErrorCode::badArgument,
                         fmt::format("--fail-above: '{}' is not METRIC=X with a metric of mse, relmse, psnr, flip and a number.", limit));
+        // A limit asks for its metric as well: without a number there would be nothing to compare with it.
         *wanted[parts[0]] = true;
         limits.emplace_back(parts[0], value->front());
     }
@@ -113,6 +115,7 @@ int runCompare(const CompareOptions& options, const Context& context)
         if (value) json[name] = *value; // psnr of equal pictures is infinite: null
     json["missed"] = Json::array();
     bool missed = false;
+    // PSNR alone is better where it is higher.
     for (const auto& [name, limit] : limits)
         for (const auto& [metric, value] : values)
             if (metric == name && !(name == "psnr" ? *value >= limit : *value <= limit)) // not a number misses, too

@@ -154,14 +154,17 @@ int runRender(RenderOptions options, const Context& context)
     RenderSettings settings;
     Quality tracer;
     if (const Status taken = takeQuality(options, settings, tracer); !taken) return fail(taken.error());
+    // Before the scene is loaded: a misspelt layer should cost no waiting.
     if (const std::string problem = options.pictures.problem(kFrameLayers); !problem.empty()) return fail(ErrorCode::badArgument, problem);
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
+    // The area pass has our tracer built in, which can't read an opponent's octahedral maps.
     if (options.areaShadows == kField && options.tracer != "ours")
         return fail(ErrorCode::badArgument,
                     fmt::format("--area-shadows field is traced by our tracer; leave it out, or --tracer {}.", options.tracer));
+    // The plan first, by what the whole scene calls for; what it gives up then goes, or it would leave shadow maps and passes behind.
     const Result<EffectPlan> plan = choosePlan(options, *scene);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
@@ -171,6 +174,7 @@ int runRender(RenderOptions options, const Context& context)
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
+    // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
     for (const PlannedEffect& effect : plan->effects)
         if (effect.ofScene && !effect.givenUp.empty() && std::ranges::find(data->effects, effect.name) != data->effects.end())
             note(context, fmt::format("Note: the light field was baked with {}, and what it holds of that stays in indirect light; bake "
@@ -183,12 +187,14 @@ int runRender(RenderOptions options, const Context& context)
     if (!gpu) return fail(gpu.error());
     settings.width = options.width;
     settings.height = options.height;
+    // The plan says what the scene calls for; how a pass does its work is left to the command line.
     settings.effects = plan->indirect();
     settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
     settings.effects.tracedDiffuse = options.diffuse == kTraced;
     settings.effects.patches = options.diffuse == kPatches;
     settings.effects.fieldShadows = options.areaShadows == kField;
+    // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
     Result<DeviceScene> deviceScene =
         DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects), consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
@@ -200,6 +206,7 @@ int runRender(RenderOptions options, const Context& context)
              "radiance. Bake it with --effects all.");
     settings.roughness = options.roughness;
     settings.seed = options.seed;
+    // An opponent's rays start further off their surface, or they meet it again; that is in metres, the setting a share of the diagonal.
     if (const std::optional<Baseline> baseline = baselineNamed(options.tracer))
     {
         settings.glossyShader = traceGlossyPass(*baseline);
@@ -216,6 +223,7 @@ int runRender(RenderOptions options, const Context& context)
     for (uint32_t i = 0; i < options.frames; ++i)
     {
         if (!progress("render", double(i) / options.frames)) return fail(ErrorCode::cancelled, "Interrupted; nothing was written.");
+        // With --temporal each frame draws rays of its own for the history to average; without, all are the same picture, timed again.
         frame = (*renderer)->render(*camera, options.temporal ? i : 0);
         if (!frame) return fail(frame.error());
         double sum = 0.0;
@@ -249,8 +257,10 @@ int runRender(RenderOptions options, const Context& context)
     json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
+    // Only the rays of reflections are counted; frames without them have no means to give.
     if (settings.effects.glossy || settings.effects.mirror) addCounts(json, *frame, settings.glossyRays);
     if (Status status = options.pictures.write(imagesOf(*frame), json); !status) return fail(status.error());
+    // After the pictures are written, so that the cost has that in it.
     addCost(json, watch);
     if (context.json)
         print(json);

@@ -161,6 +161,7 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
     }
     vec3 view = -direction;
     ShadingPoint point = shade(*hit, view);
+    // In full: no draw of an emitter stands for what the eye sees itself.
     light.direct = point.emission;
     for (const Light& source : scene.lights) light.direct += punctual(point, view, source);
 
@@ -169,6 +170,7 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
     // has the light that the field has.
     for (uint32_t vertex = 1; vertex <= bounces + 2; ++vertex)
     {
+        // Beyond the first hit both lobes pass light on, and the first hit's lobe alone says to which term it counts.
         const BrdfValue emitted = emitterLight(point, view, random);
         const vec3 both = emitted.diffuse + emitted.specular;
         light.diffuse += diffuse * (vertex == 1 ? emitted.diffuse : both);
@@ -200,6 +202,7 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
         hit = rays.closest(from, next->direction);
         if (!hit)
         {
+            // In full, since the sky is only ever met by chance and never drawn.
             light.diffuse += diffuse * scene.sky;
             light.glossy += glossy * scene.sky;
             break;

@@ -282,6 +282,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();
 
+        // Not before the scene is on the device: only its list of lights tells whether maps of emission are needed, which count.
         const bool emitters = deviceScene->lights().header.emitterCount > 0;
         const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
         if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
@@ -291,6 +292,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         bake.surfaces.resize(texels);
         if (emitters) bake.emitted.resize(texels);
         bake.field.irradiance.resize(probes.size() * kIrradianceWordsPerProbe);
+        // Octree and summaries are made from cube faces, of which an octahedral field keeps none.
         if (bake.octahedral())
         {
             bake.cube.info = info;
@@ -307,6 +309,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         if (settings.bounces > 0) bake.direct = bake.field.radiance;
         double energy = meanRadiance(bake.field);
         spent.energy.push_back(energy);
+        // Their number is a bound: a bounce costs a gather a texel, and one that adds next to nothing is the last.
         for (uint32_t b = 1; b <= settings.bounces; ++b)
         {
             if (auto status = bake.bounce(**gpu, **baker, b); !status) return status.error();
@@ -324,6 +327,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         spent.prefilterSeconds = watch.lap();
         spent.peakDeviceBytes = (*gpu)->memory().peak();
     }
+    // Patches and prefiltering don't ask; who wanted to stop meanwhile is heard here.
     if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};
     bakeReport = spent;
     return std::move(bake.field);

@@ -192,6 +192,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
     color.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     color.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // only read where the depth says that something is there
     color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    // Cleared, unlike the surfaces: depth is what tells where nothing was drawn.
     VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     depth.imageView = depthImage.view();
     depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;

@@ -189,6 +189,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT);
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
+    // Traces write where rays start; the other pixels must not keep the counts of the frame before.
     if (countImage)
     {
         const VkClearColorValue nothing{.uint32 = {gpu::kNoProbe, 0, 0, 0}};
@@ -220,6 +221,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         for (const GpuImage* image : images)
             if (*image) scanImage(*gpu, cmd, name, *image);
     };
+    // Ahead of all passes, which run by its lists.
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
     pass(gatherPass, gatherSet, gatherList(), "gather light");
     scan("gather light", {&diffuseImage, &roughImage});
@@ -243,6 +245,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         pass(glossyFill, glossyFillSet, gpu::kTermGlossy, "glossy fill");
         scan("glossy fill", {&glossyImage});
     }
+    // After the fill: where the trace is sparse, most pixels have no light before it that a filter could take.
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
     // Who reads the outputs is the host's choice, so all commands; nothing later in the frame may write them without a barrier of its own.

@@ -138,6 +138,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     auto mesh = SceneMesh::create(gpu, scene, space);
     if (!mesh) return mesh.error();
     DeviceScene made(std::move(*mesh));
+    // Two arrays, since an array has one format: colours are sRGB, data is linear.
     auto color = makeTextureArray(gpu, scene, TextureKind::color, desc.maxTextureSize);
     if (!color) return color.error();
     made.color = std::move(*color);
@@ -188,6 +189,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     made.set.write(gpu::kDataTexturesBinding, made.data.image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                    made.textureSampler.handle());
     made.set.write(gpu::kLightsBinding, made.lightBuffer);
+    // After materials and textures are in the set: masked triangles are drawn into the maps by both.
     if (auto status = made.makeShadowMaps(gpu, progress); !status) return status.error();
     // Served the uploads only, so it goes before the scene's bytes are counted.
     gpu.releaseStaging();
@@ -277,6 +279,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         if (!report(progress, "shadow maps", double(i) / double(lightList.lights.size())))
             return Error{ErrorCode::cancelled, "The bake was stopped while rendering shadow maps"};
         const gpu::GpuLight& light = lightList.lights[i];
+        // Samples that rays shadow have no map to draw.
         if (light.shadowLayer == kNoShadowMap) continue;
         const Kind& kind = kinds[light.type == gpu::kLightDirectional ? 0
                                  : light.type == gpu::kLightSky       ? 1

@@ -48,6 +48,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
     // curve within, so that clusters have small boxes and culling finds some to leave out.
     struct Key
     {
+        // The triangle last: std::sort keeps no order among equals, and the same scene should give the same buffers everywhere.
         uint32_t masked, code, triangle;
         bool operator<(const Key& other) const
         {
@@ -74,6 +75,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
     known.reserve(positions.size());
     for (size_t i = 0; i < order.size(); ++i)
     {
+        // No cluster has both kinds, since each kind is drawn by its own pipeline.
         const bool startsMasked = i > 0 && order[i].masked && !order[i - 1].masked;
         if (mesh.clusters.empty() || mesh.clusters.back().count == 3 * kClusterTriangles || startsMasked)
         {

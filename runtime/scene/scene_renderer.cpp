@@ -88,11 +88,13 @@ Status SceneRenderer::make()
 {
     const IndirectEffects& effects = settings.effects;
     const bool rays = effects.glossy || effects.mirror;
+    // First, since passes made below take its images and its list of tiles.
     auto light = makeIndirectLight(gpu, field, {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays},
                                    settings.glossyShader);
     if (!light) return light.error();
     indirect.emplace(std::move(*light));
 
+    // Whatever is drawn is sampled by passes and may be copied, by readBack() or a scan for NaN.
     auto image = [&](GpuImage& target, VkFormat format, VkImageUsageFlags usage, const char* what) -> Status
     {
         ImageDesc desc;
@@ -122,6 +124,7 @@ Status SceneRenderer::make()
         if (!made) return made.error();
         *target = std::move(*made);
     }
+    // Before the passes: makePass() writes the frame view and the G-buffer into the set of each.
     auto block = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
     if (!block) return block.error();
     frameBlock = std::move(*block);
@@ -293,6 +296,7 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     scene.mesh().bind(cmd);
     scene.mesh().leaveOutBackFaces(cmd, view);
     scene.mesh().cull(view, draws);
+    // One pipeline for both kinds, unlike a shadow map's: the G-buffer reads the material of every triangle anyway.
     scene.mesh().draw(cmd, draws.opaque);
     scene.mesh().draw(cmd, draws.masked);
     gpu.vk.CmdEndRendering(cmd);
@@ -327,6 +331,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         view.clipFromWorldBefore = clipFromWorld(*before, basisOf(*before, settings.width, settings.height));
     }
     before = camera;
+    // In metres; as a share of the diagonal the setting fits scenes of any size.
     view.normalOffset = settings.normalOffset * space.diagonal * space.scale;
 
     if (timer) timer->begin(cmd, "G-buffer");
@@ -345,6 +350,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     // Read after write: the view, which is all that the update wrote.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
 
+    // Workgroups of direct light and composition are 8 x 8 pixels; these passes drop what lies beyond the edge.
     const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
     if (timer) timer->begin(cmd, "direct light");
     const VkDescriptorSet directSets[] = {scene.descriptorSet(), directSet.handle()};
@@ -354,6 +360,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (timer) timer->end(cmd);
     scanImage(gpu, cmd, "direct light", direct);
 
+    // Before the area lights, which add to the diffuse term that this writes.
     indirect->record(cmd, view, timer);
 
     const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, bool withField = false)

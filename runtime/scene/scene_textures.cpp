@@ -132,6 +132,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
     array.layerOfImage.assign(scene.images.size(), -1);
     std::vector<const Image*> layers;
     uint32_t size = 1;
+    // Of the images those alone that a material uses in this way, each once: all layers are as large as the largest.
     const auto use = [&](const TextureRef& texture)
     {
         if (texture.image < 0 || array.layerOfImage[size_t(texture.image)] >= 0) return;
@@ -178,6 +179,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
         parallelFor(count, [&](size_t i) { chains[i] = mipChain(*layers[first + i], size, kind == TextureKind::color); });
         for (size_t i = 0; i < count; ++i)
         {
+            // Staged one by one: submit() waits for the copy, so that staging never takes more than one image's bytes.
             auto staging = gpu.makeBuffer(chains[i].size(), 0, MemoryUse::upload, "A texture's staging buffer");
             if (!staging) return staging.error();
             std::memcpy(staging->mapped(), chains[i].data(), chains[i].size());

@@ -193,11 +193,13 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
     dynamic.dynamicStateCount = uint32_t(std::size(dynamics));
     dynamic.pDynamicStates = dynamics;
+    // Rendering is dynamic: there is no render pass that the formats could come from.
     VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
     rendering.colorAttachmentCount = uint32_t(desc.colorFormats.size());
     rendering.pColorAttachmentFormats = desc.colorFormats.data();
     rendering.depthAttachmentFormat = desc.depthFormat;
     VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
+    // Without a fragment shader depth alone is drawn, and the second stage has no module.
     info.stageCount = desc.fragment.empty() ? 1 : 2;
     info.pStages = stages;
     info.pVertexInputState = &input;
