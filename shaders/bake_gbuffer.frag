@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "material.glsl"
+#include "shared/brdf.h"
 #include "shared/chart.h"
 #include "shared/color.h"
 
-// What a probe's texel shows, in one 4 x 32-bit texel: (root of base colour and metallic, 4 x 8), (shading normal, octahedral 2 x 16),
-// (geometric normal, the same), (emission, R11G11B10F). Both normals face the probe.
+// What a probe's texel shows, in one 4 x 32-bit texel: (root of the surface's hemispherical albedo, 3 x 10), (shading normal, octahedral
+// 2 x 16), (geometric normal, the same), (emission, R11G11B10F). Both normals face the probe.
 layout(location = 0) in vec3 relative;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
@@ -26,7 +27,7 @@ void main()
     vec3 shading = lengthSquared > 1e-12 ? normal * inversesqrt(lengthSquared) : geometric;
     if (dot(shading, geometric) < 0.0) shading = -shading;
     SurfacePoint surface = evaluateMaterial(material, uv, uvDx, uvDy);
-    outSurface = uvec4(packUnorm4x8(vec4(sqrt(clamp(surface.baseColor.rgb, 0.0, 1.0)), surface.metallic)),
-                       packUnorm2x16(octahedralFromDirection(shading)), packUnorm2x16(octahedralFromDirection(geometric)),
-                       packRadiance(surface.emission));
+    vec3 albedo = hemisphericalAlbedo(BrdfSurface(clamp(surface.baseColor.rgb, 0.0, 1.0), surface.metallic, surface.roughness));
+    outSurface = uvec4(packRootOfColor(albedo), packUnorm2x16(octahedralFromDirection(shading)),
+                       packUnorm2x16(octahedralFromDirection(geometric)), packRadiance(surface.emission));
 }

@@ -4,8 +4,8 @@
 #include "bake_probe.glsl"
 #include "lights.glsl"
 
-// Bake: a probe's rasterised faces become distance words, radiance under direct light, and what a bounce needs of the surface.
-// Reflectance = diffuse part + specular reflectance at normal incidence: glossy lobes are baked as diffuse ones of the same strength.
+// Bake: a probe's rasterised faces become distance words, radiance under direct light, and what a bounce needs of the surface: all lobes are
+// baked as one diffuse lobe that reflects as much light (hemisphericalAlbedo).
 // Dispatch: ceil(N/8) x ceil(N/8) x 6.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = kBakeSurfaceBinding) uniform utexture2D surfaceImage; // [6 N][N], faces below each other; layout: bake_gbuffer.frag
@@ -28,8 +28,6 @@ void main()
         return;
     }
     uvec4 seen = texelFetch(surfaceImage, pixel, 0);
-    vec4 base = unpackUnorm4x8(seen.x);
-    vec3 baseColor = base.rgb * base.rgb;
     vec3 shading = directionFromOctahedral(unpackUnorm2x16(seen.y));
     vec3 geometric = directionFromOctahedral(unpackUnorm2x16(seen.z));
     vec3 emission = unpackRadiance(seen.w);
@@ -44,7 +42,7 @@ void main()
     vec2 gradient = abs(facing) > 1e-6 ? n.xy / facing * (2.0 / float(push.size)) : vec2(0.0);
     push.words.word[wordIndex] = packTexel(q, gradient.x, gradient.y);
 
-    vec3 albedo = baseColor * (1.0 - base.a) * 0.96 + mix(vec3(0.04), baseColor, base.a);
+    vec3 albedo = unpackRootOfColor(seen.x);
     vec3 irradiance = directLight(p, shading, geometric);
     push.radiance.word[index] = packRadiance(emission + albedo * irradiance / kBrdfPi);
     if (!isNull(push.emitted)) push.emitted.word[index] = seen.w;

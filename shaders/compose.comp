@@ -19,14 +19,6 @@ layout(set = 1, binding = kComposeBeautyBinding, rgba32f) writeonly uniform imag
 layout(set = 1, binding = kComposeDiffuseLayerBinding, rgba32f) writeonly uniform image2D diffuseLayer; // rgb radiance to the eye
 layout(set = 1, binding = kComposeGlossyLayerBinding, rgba32f) writeonly uniform image2D glossyLayer;  // of all reflections
 
-/// 1/pi times the integral of Schlick's (1 - v.h)^5 over the hemisphere of l, weighted by its cosine: what the specular lobe takes from
-/// white light before the diffuse one. A polynomial fit to the integral, within 1.3e-5 for every angle.
-float meanSchlick(float cosine)
-{
-    float m = 1.0 - clamp(cosine, 0.0, 1.0);
-    return 8.179e-5 + m * (2.0370e-3 + m * (9.2268e-3 + m * (7.9485e-3 + m * 8.8657e-3)));
-}
-
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -36,11 +28,7 @@ void main()
     uint terms = termsOf(p) & kMade;
     vec3 scattered = vec3(0.0), reflected = vec3(0.0);
     if ((terms & (1u << kTermDiffuse)) != 0u)
-    {
-        vec3 f0 = reflectanceAtNormal(p.brdf);
-        vec3 kept = (vec3(1.0) - f0) * (1.0 - meanSchlick(dot(p.normal, p.view)));
-        scattered = imageLoad(diffuse, at).rgb * p.brdf.baseColor * (1.0 - p.brdf.metallic) * kept;
-    }
+        scattered = imageLoad(diffuse, at).rgb * lobesAt(p.brdf, dot(p.normal, p.view)).diffuse;
     float rays = shareOfRays(p.brdf.roughness);
     if ((terms & (1u << kTermRough)) != 0u) reflected += (1.0 - rays) * imageLoad(rough, at).rgb;
     if ((terms & (1u << kTermGlossy)) != 0u) reflected += rays * imageLoad(glossy, at).rgb;

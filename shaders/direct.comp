@@ -23,10 +23,11 @@ void main()
         light = texelFetch(gEmission, at, 0).rgb;
         vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
         vec3 point = (p.position - push.origin) / push.scale;
+        BrdfLobes lobes = lobesAt(p.brdf, dot(p.normal, p.view));
         for (uint i = 0u; i < push.lightCount; ++i)
         {
             LightSample s = lightAt(lights[i].type, i, point, geometric);
-            BrdfValue f = evaluateBrdf(p.brdf, p.normal, p.view, s.toLight);
+            BrdfValue f = evaluateLobes(lobes, p.brdf.roughness, p.normal, p.view, s.toLight);
             light += s.irradiance * max(dot(p.normal, s.toLight), 0.0) * (f.diffuse + f.specular);
         }
     }

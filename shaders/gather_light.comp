@@ -14,20 +14,8 @@ layout(constant_id = kGatherRoughId) const bool kRough = true;   // make the rou
 layout(constant_id = kByPatchesId) const bool kByPatches = false; // diffuse light from one probe's patches
 layout(set = 1, binding = kGatherDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
 layout(set = 1, binding = kGatherRoughBinding, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
-layout(scalar, set = 1, binding = kEnvironmentBrdfBinding) readonly buffer EnvironmentBrdf { vec2 environmentBrdf[]; }; // runtime/frame/environment_brdf.h
 
 const uint kLookUps = 4u; // dithered look-ups a pixel
-
-/// Bilinear: scale and bias of the reflectance at normal incidence.
-vec2 reflectedShare(float cosine, float alpha)
-{
-    const int n = int(kEnvironmentBrdfSide);
-    vec2 at = clamp(vec2(cosine, sqrt(alpha)), 0.0, 1.0) * float(n - 1);
-    ivec2 low = min(ivec2(at), n - 2);
-    vec2 f = at - vec2(low);
-    int i = low.y * n + low.x;
-    return mix(mix(environmentBrdf[i], environmentBrdf[i + 1], f.x), mix(environmentBrdf[i + n], environmentBrdf[i + n + 1], f.x), f.y);
-}
 
 // The probes that look-ups name, and how often: the weight of a probe doesn't depend on the look-up, so each is asked once and counted as often.
 // Vectors with constant indices: an array indexed by each lane is slow where lanes are vectors.
@@ -162,6 +150,6 @@ void main()
         inLobe += weight * lobeRadiance(heaviest.probe[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(heaviest.probe[i], fromProbe, lobe.direction));
         weights += weight;
     }
-    vec2 share = reflectedShare(dot(p.normal, p.view), alpha);
-    imageStore(rough, at, vec4(inLobe / weights * (reflectanceAtNormal(p.brdf) * share.x + share.y), 1.0));
+    // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
+    imageStore(rough, at, vec4(inLobe / weights * specularColor(lobesAt(p.brdf, dot(p.normal, p.view))), 1.0));
 }

@@ -75,4 +75,4 @@ float likeness(Surroundings s, Pixel q)
 float filterReach(float roughness) { return kFilterReach * clamp(2.5 * roughness - 0.05, 0.0, 1.0); }
 
 /// What a surface makes of white light that comes along its reflection: what a filter divides by, to leave its texture alone.
-vec3 tintOf(Pixel p) { return max(fresnelSchlick(reflectanceAtNormal(p.brdf), dot(p.normal, p.view)), vec3(1e-3)); }
+vec3 tintOf(Pixel p) { return max(specularColor(lobesAt(p.brdf, dot(p.normal, p.view))), vec3(1e-3)); }

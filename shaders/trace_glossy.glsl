@@ -35,17 +35,18 @@ void trace(ivec2 at, Pixel p, uint terms)
     view.z = max(view.z, 1e-4); // a shading normal may turn away from the eye
     const bool mirror = kTerm == kTermMirror;
     float alpha = ggxAlpha(p.brdf.roughness);
+    BrdfLobes lobes = lobesAt(p.brdf, view.z);
     uint rays = mirror ? 1u : frame.glossyRays;
     for (uint i = 0u; i < rays; ++i)
     {
         vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), alpha, randomPair(uvec2(at), i, 0u, frame.seed));
         vec3 direction = reflect(-view, halfway);
         if (direction.z <= 0.0) continue; // below the surface: no light
-        vec3 fresnel = fresnelSchlick(reflectanceAtNormal(p.brdf), dot(view, halfway));
-        // weight of a visible-normal sample: F G2 / G1 (Heitz 2018)
+        vec3 color = lobes.atNormal + lobes.atEdge * schlick(dot(view, halfway));
+        // weight of a visible-normal sample: colour G2 / G1 (Heitz 2018)
         float weight = mirror ? 1.0 : 4.0 * view.z * direction.z * smithVisibility(direction.z, view.z, alpha) / max(smithMasking(view.z, alpha), 1e-6);
         RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, normalize(toWorld(tangents, direction)), p.normal);
-        result += vec4(fresnel * weight * hit.radiance, hit.t);
+        result += vec4(color * weight * hit.radiance, hit.t);
         count.x = hit.probe;
         count.y += uint(hit.handoffs);
         count.z += uint(hit.distanceReads + hit.indexReads);

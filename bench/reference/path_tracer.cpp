@@ -25,11 +25,10 @@ float balance(float own, float other)
     return own / (own + other);
 }
 
-/// Share of the samples that go to the specular lobe, by the lobes' reflectance at this angle.
-float specularShare(const BrdfSurface& surface, float nv)
+/// Share of the samples that go to the specular lobe, by what the lobes reflect toward the viewer.
+float specularShare(const BrdfLobes& lobes)
 {
-    const float specular = largest(fresnelSchlick(reflectanceAtNormal(surface), nv));
-    const float diffuse = largest(surface.baseColor) * (1.0f - surface.metallic);
+    const float specular = largest(specularColor(lobes)), diffuse = largest(lobes.diffuse);
     if (!(diffuse > 0.0f)) return 1.0f;
     return std::clamp(specular / (specular + diffuse), 0.1f, 0.9f);
 }
@@ -51,6 +50,7 @@ ShadingPoint PathTracer::shade(const SurfaceHit& hit, vec3 view) const
     point.normal = side * hit.shadingNormal;
     if (!(glm::dot(point.normal, view) > 0.0f)) point.normal = point.geometricNormal;
     point.surface = {vec3(material.baseColor), material.metallic, roughness.value_or(material.roughness)};
+    point.lobes = lobesAt(point.surface, glm::dot(point.normal, view));
     point.emission = material.emission;
     return point;
 }
@@ -58,7 +58,7 @@ ShadingPoint PathTracer::shade(const SurfaceHit& hit, vec3 view) const
 BrdfValue PathTracer::reflect(const ShadingPoint& point, vec3 view, vec3 light) const
 {
     if (!(glm::dot(point.geometricNormal, light) > 0.0f)) return {vec3(0.0f), vec3(0.0f)};
-    BrdfValue value = evaluateBrdf(point.surface, point.normal, view, light);
+    BrdfValue value = evaluateLobes(point.lobes, point.surface.roughness, point.normal, view, light);
     const float cosine = std::max(glm::dot(point.normal, light), 0.0f);
     value.diffuse *= cosine;
     value.specular *= cosine;
@@ -67,7 +67,7 @@ BrdfValue PathTracer::reflect(const ShadingPoint& point, vec3 view, vec3 light) 
 
 float PathTracer::scatterPdf(const ShadingPoint& point, vec3 view, vec3 light) const
 {
-    const float share = specularShare(point.surface, glm::dot(point.normal, view));
+    const float share = specularShare(point.lobes);
     const float diffuse = std::max(glm::dot(point.normal, light), 0.0f) / kBrdfPi;
     if (isMirror(point.surface.roughness)) return (1.0f - share) * diffuse;
     return share * visibleNormalPdf(point.normal, view, light, ggxAlpha(point.surface.roughness)) + (1.0f - share) * diffuse;
@@ -77,7 +77,7 @@ std::optional<PathTracer::Scatter> PathTracer::scatter(const ShadingPoint& point
 {
     const float nv = glm::dot(point.normal, view);
     if (!(nv > 0.0f)) return std::nullopt;
-    const float share = specularShare(point.surface, nv);
+    const float share = specularShare(point.lobes);
     const bool specular = random.uniform() < share;
     const vec2 u = random.uniform2();
     Scatter sample;
@@ -85,7 +85,7 @@ std::optional<PathTracer::Scatter> PathTracer::scatter(const ShadingPoint& point
     {
         sample.direction = glm::normalize(2.0f * nv * point.normal - view);
         if (!(glm::dot(sample.direction, point.geometricNormal) > 0.0f)) return std::nullopt;
-        sample.specular = mirrorReflectance(point.surface, nv) / share;
+        sample.specular = specularColor(point.lobes) / share;
         return sample;
     }
     const TangentFrame frame = tangentFrame(point.normal);

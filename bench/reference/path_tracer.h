@@ -17,6 +17,7 @@ struct ShadingPoint
     vec3 geometricNormal{0.0f}; // on the viewer's side
     vec3 normal{0.0f};          // shading normal, on the viewer's side
     BrdfSurface surface{};
+    BrdfLobes lobes{}; // of the surface, to the viewer
     vec3 emission{0.0f};
 };
 

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/frame/environment_brdf.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/gather_light_comp.h"
 #include "spirv/reconstruct_comp.h"
@@ -50,14 +49,12 @@ Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const 
 Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
                                       std::initializer_list<ShaderConstant> constants)
 {
-    std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                                    {gpu::kEnvironmentBrdfBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (const Bound& bound : images) bindings.push_back({bound.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
     auto made = makeFrameSet(*gpu, frame, bindings);
     if (!made) return made.error();
     set = std::move(*made);
     for (const Bound& bound : images) set.write(bound.binding, bound.image->view(), VK_IMAGE_LAYOUT_GENERAL);
-    set.write(gpu::kEnvironmentBrdfBinding, brdfTable ? brdfTable : frame); // what a pass doesn't use is bound to something that is there
     set.write(gpu::kTileBinding, tileList->buffer());
     std::vector<ShaderConstant> values(constants);
     for (const ShaderConstant& ofField : shaderConstants(field)) values.push_back(ofField);
@@ -105,13 +102,7 @@ Status IndirectLight::State::makeGather()
     if (gathersDiffuse())
         if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
     if (effects.rough)
-    {
         if (auto s = makeImage(roughImage, kLightFormat, "rough reflections"); !s) return s;
-        const std::vector<glm::vec2> table = environmentBrdf();
-        auto buffer = gpu->makeBufferWith<glm::vec2>(table, 0, "environment BRDF");
-        if (!buffer) return buffer.error();
-        brdfTable = std::move(*buffer);
-    }
     const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
     return makePass(gatherPass, gatherSet, gather_light_comp, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
@@ -256,7 +247,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 uint64_t IndirectLight::State::deviceBytes() const
 {
     const uint64_t pixels = uint64_t(desc.width) * desc.height;
-    uint64_t bytes = frame.size() + brdfTable.size() + (tileList ? tileList->buffer().size() : 0);
+    uint64_t bytes = frame.size() + (tileList ? tileList->buffer().size() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += 16 * pixels;
     return bytes + denoiser.deviceBytes();

@@ -18,7 +18,7 @@ struct IndirectLight::State
     LightField field;
     Desc desc;
     Spirv glossyShader; // of the traced terms
-    Buffer frame, brdfTable;
+    Buffer frame;
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
     DescriptorSet glossySet, mirrorSet, diffuseSet, gatherSet, glossyFillSet, diffuseFillSet;

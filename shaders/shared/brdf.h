@@ -17,29 +17,33 @@ using glm::vec3;
 } // namespace sconce::brdf_float
 namespace sconce
 {
+using brdf_float::BrdfLobes;
 using brdf_float::BrdfSurface;
 using brdf_float::BrdfValue;
 using brdf_float::distanceAttenuation;
 using brdf_float::evaluateBrdf;
-using brdf_float::fresnelSchlick;
+using brdf_float::evaluateLobes;
 using brdf_float::ggxAlpha;
 using brdf_float::ggxDistribution;
+using brdf_float::hemisphericalAlbedo;
 using brdf_float::isMirror;
 using brdf_float::kBrdfPi;
 using brdf_float::kMirrorRoughness;
 using brdf_float::kSmallestAlpha;
-using brdf_float::mirrorReflectance;
-using brdf_float::reflectanceAtNormal;
+using brdf_float::lobesAt;
 using brdf_float::sampleCosine;
 using brdf_float::sampleVisibleNormal;
+using brdf_float::schlick;
 using brdf_float::smithMasking;
 using brdf_float::smithVisibility;
+using brdf_float::specularColor;
 using brdf_float::spotAttenuation;
 using brdf_float::TangentFrame;
 using brdf_float::tangentFrame;
 using brdf_float::toTangent;
 using brdf_float::toWorld;
 using brdf_float::visibleNormalPdf;
+using brdf_float::whiteShares;
 using glm::vec2;
 using glm::vec3;
 } // namespace sconce

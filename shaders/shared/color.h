@@ -25,6 +25,19 @@ SCONCE_PURE uint packRadianceDithered(vec3 c, real up)
 
 SCONCE_PURE uint packRadiance(vec3 c) { return packRadianceDithered(c, real(0.5)); }
 
+/// A colour in [0,1] by its root, 10 bits a channel: steps of 0.2 % at 1 and finer below.
+SCONCE_PURE uint packRootOfColor(vec3 c)
+{
+    vec3 root = sqrt(clamp(c, vec3(real(0.0)), vec3(real(1.0)))) * real(1023.0) + real(0.5);
+    return uint(root.x) | (uint(root.y) << 10) | (uint(root.z) << 20);
+}
+
+SCONCE_PURE vec3 unpackRootOfColor(uint w)
+{
+    vec3 root = vec3(real(w & 1023u), real((w >> 10) & 1023u), real((w >> 20) & 1023u)) / real(1023.0);
+    return root * root;
+}
+
 /// An offset of its own for every texel, [0,1): the golden ratio's multiples (Weyl), as a sequence over the texels' numbers.
 SCONCE_PURE real ditherOf(uint texel) { return real((texel * 2654435769u) >> 8) / real(16777216.0); }
 

@@ -19,8 +19,6 @@ struct FrameView
 };
 SCONCE_CHECK_SIZE(FrameView, 180);
 
-const uint kEnvironmentBrdfSide = 32u; // entries a side of the table of runtime/frame/environment_brdf.h
-
 const float kRaysBelow = 0.4f;   // roughness
 const float kRaysBlend = 0.05f;  // either side of raysBelow both are made and blended, so that no seam shows in a roughness texture
 

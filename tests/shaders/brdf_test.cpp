@@ -36,6 +36,51 @@ template <class F> double overHemisphere(F f)
     return sum * 2.0 * std::numbers::pi / (kCosines * kAngles);
 }
 
+/// x: what a white GGX lobe reflects of white light without scattering twice, y: the same weighted by (1 - v.h)^5. In double and from the
+/// formulas of the papers: GGX (Walter et al. 2007, equation 33), height-correlated Smith (Heitz 2014, equation 99). The half vector is
+/// integrated over, by tan(theta) = alpha sqrt(u / (1 - u)), whose density is D cos(theta): the lobe is flat in u however narrow it is.
+glm::dvec2 whiteByQuadrature(double nv, double alpha)
+{
+    constexpr int kRings = 1000, kAround = 240;
+    const glm::dvec3 view(std::sqrt(1.0 - nv * nv), 0.0, nv);
+    const auto lambda = [&](double cosine) { return 0.5 * (std::sqrt(1.0 + alpha * alpha * (1.0 / (cosine * cosine) - 1.0)) - 1.0); };
+    glm::dvec2 sum(0.0);
+    for (int ring = 0; ring < kRings; ++ring)
+    {
+        const double u = (ring + 0.5) / kRings, tangent = alpha * std::sqrt(u / (1.0 - u)), nh = 1.0 / std::sqrt(1.0 + tangent * tangent);
+        for (int i = 0; i < kAround; ++i)
+        {
+            const double phi = 2.0 * std::numbers::pi * (i + 0.5) / kAround;
+            const glm::dvec3 half(tangent * nh * std::cos(phi), tangent * nh * std::sin(phi), nh);
+            const double vh = glm::dot(view, half);
+            const double nl = 2.0 * vh * nh - nv;
+            if (vh <= 0.0 || nl <= 0.0) continue;
+            // D G / (4 nl nv) nl dl, with dl = 4 vh dh and D nh dh uniform in u and phi
+            const double weight = vh / (nv * nh) / (1.0 + lambda(nl) + lambda(nv));
+            sum += glm::dvec2(weight, weight * std::pow(1.0 - vh, 5.0));
+        }
+    }
+    return sum / double(kRings * kAround);
+}
+
+TEST(Brdf, SharesOfWhiteLightAgreeWithQuadrature)
+{
+    for (const double roughness : {0.03, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0})
+        for (const double nv : {0.05, 0.15, 0.3, 0.5, 0.7, 0.9, 1.0})
+        {
+            const glm::dvec2 truth = whiteByQuadrature(nv, std::max(roughness * roughness, 1e-3));
+            const vec2 found = whiteShares(float(nv), float(roughness));
+            EXPECT_NEAR(found.x, truth.x, 0.006 * truth.x) << "roughness " << roughness << ", n.v " << nv; // 0.55 % at most
+            const double dielectric = 0.04 * truth.x + 0.96 * truth.y;
+            EXPECT_NEAR(0.04 * found.x + 0.96 * found.y, dielectric, 0.02 * dielectric) << "roughness " << roughness << ", n.v " << nv;
+        }
+    for (const double nv : {0.0, 0.3, 1.0}) // a mirror's are Schlick's
+    {
+        EXPECT_EQ(whiteShares(float(nv), 0.0f).x, 1.0f);
+        EXPECT_NEAR(whiteShares(float(nv), 0.0f).y, std::pow(1.0 - nv, 5.0), 1e-6);
+    }
+}
+
 TEST(Brdf, RoughnessOneIsItsClosedForm)
 {
     const BrdfSurface surface{vec3(0.7f), 0.25f, 1.0f};
@@ -45,10 +90,58 @@ TEST(Brdf, RoughnessOneIsItsClosedForm)
             for (double phi : {0.0, 1.0, 3.0})
             {
                 const BrdfValue value = evaluateBrdf(surface, kNormal, directionAt(nv, 0.0), directionAt(nl, phi));
-                const double vh = test::RoughModel::cosineToHalf(nl, nv, phi);
-                EXPECT_NEAR(value.diffuse.x, model.diffuse(vh), 1e-5) << nl << ' ' << nv << ' ' << phi;
-                EXPECT_NEAR(value.specular.x, model.specular(vh, nl, nv), 1e-5 * (1 + model.specular(vh, nl, nv)));
+                const double vh = test::RoughModel::cosineToHalf(nl, nv, phi), diffuse = model.diffuse(nl, nv),
+                             specular = model.specular(vh, nl, nv);
+                // Within what the shares' fits allow: 0.55 % of the gain, 2 % of the 4 to 9 % that a dielectric reflects.
+                EXPECT_NEAR(value.diffuse.x, diffuse, 0.003 * diffuse) << nl << ' ' << nv << ' ' << phi;
+                EXPECT_NEAR(value.specular.x, specular, 0.006 * specular) << nl << ' ' << nv << ' ' << phi;
             }
+}
+
+// What a surface reflects of a white furnace by quadrature over the light, against the number 1: metals and dielectrics, every roughness.
+TEST(Brdf, WhiteFurnaceGivesOne)
+{
+    for (const float metallic : {0.0f, 0.5f, 1.0f})
+        for (const float roughness : {0.3f, 0.5f, 0.7f, 0.85f, 1.0f})
+            for (const double nv : {0.05, 0.2, 0.4, 0.7, 1.0})
+            {
+                const BrdfSurface surface{vec3(1.0f), metallic, roughness};
+                const vec3 view = directionAt(nv, 0.0);
+                const double reflects = overHemisphere(
+                    [&](vec3 l)
+                    {
+                        const BrdfValue f = evaluateBrdf(surface, kNormal, view, l);
+                        return double(f.diffuse.x + f.specular.x) * l.z;
+                    });
+                EXPECT_NEAR(reflects, 1.0, 0.01) << "metallic " << metallic << ", roughness " << roughness << ", n.v " << nv;
+            }
+}
+
+TEST(Brdf, HemisphericalAlbedoAgreesWithQuadrature)
+{
+    for (const BrdfSurface& surface :
+         {BrdfSurface{vec3(0.7f), 0.0f, 1.0f}, {vec3(0.7f), 0.5f, 0.5f}, {vec3(0.9f), 1.0f, 1.0f}, {vec3(0.7f), 0.0f, 0.3f}})
+    {
+        double sum = 0.0;
+        constexpr int kViews = 24;
+        for (int i = 0; i < kViews; ++i)
+        {
+            const double nv = (i + 0.5) / kViews;
+            const vec3 view = directionAt(nv, 0.0);
+            sum += 2.0 * nv / kViews *
+                   overHemisphere(
+                       [&](vec3 l)
+                       {
+                           const BrdfValue f = evaluateBrdf(surface, kNormal, view, l);
+                           return double(f.diffuse.x + f.specular.x) * l.z;
+                       });
+        }
+        EXPECT_NEAR(hemisphericalAlbedo(surface).x, sum, 0.004 * sum) << surface.metallic << ' ' << surface.roughness;
+    }
+    EXPECT_NEAR(hemisphericalAlbedo({vec3(0.9f), 1.0f, 1.0f}).x, test::RoughModel({0.9, 1.0}).hemisphericalAlbedo(), 0.004);
+    EXPECT_NEAR(hemisphericalAlbedo({vec3(0.7f), 0.0f, 1.0f}).x, test::RoughModel({0.7, 0.0}).hemisphericalAlbedo(), 0.002);
+    // A mirror's: Schlick's term has the mean 1/21.
+    EXPECT_NEAR(hemisphericalAlbedo({vec3(0.5f), 1.0f, 0.0f}).x, 0.5 + 0.5 / 21.0, 1e-4);
 }
 
 TEST(Brdf, FloatAgreesWithDouble)
@@ -66,31 +159,15 @@ TEST(Brdf, FloatAgreesWithDouble)
             }
 }
 
+// The diffuse lobe in full; the specular one up to its gain, which is the viewer's alone.
 TEST(Brdf, ReciprocalInViewAndLight)
 {
-    const BrdfSurface surface{vec3(0.7f, 0.2f, 0.1f), 0.5f, 0.4f};
+    const BrdfSurface surface{vec3(0.7f, 0.2f, 0.1f), 0.0f, 0.4f};
     const vec3 v = directionAt(0.8, 0.3), l = directionAt(0.3, 2.0);
     const BrdfValue a = evaluateBrdf(surface, kNormal, v, l), b = evaluateBrdf(surface, kNormal, l, v);
     EXPECT_NEAR(a.diffuse.x, b.diffuse.x, 1e-6f);
-    EXPECT_NEAR(a.specular.x, b.specular.x, 1e-6f);
-}
-
-// A white metal can lose light between facets, never gain it (Heitz 2014: the single-scattering albedo is at most 1).
-TEST(Brdf, WhiteFurnaceNeverGainsLight)
-{
-    for (float roughness : {0.3f, 0.5f, 0.8f, 1.0f})
-        for (double nv : {0.05, 0.3, 0.7, 1.0})
-        {
-            const BrdfSurface surface{vec3(1.0f), 1.0f, roughness};
-            const vec3 view = directionAt(nv, 0.0);
-            const double albedo = overHemisphere([&](vec3 l) { return double(evaluateBrdf(surface, kNormal, view, l).specular.x) * l.z; });
-            EXPECT_LE(albedo, 1.002) << "roughness " << roughness << ", n.v " << nv;
-            // Seen straight on at alpha 1 the integral of nl / (1 + nl) is closed.
-            if (roughness == 1.0f && nv == 1.0)
-            {
-                EXPECT_NEAR(albedo, 1.0 - std::numbers::ln2, 1e-4);
-            }
-        }
+    const auto gain = [&](double nv) { return 1.0 + 0.04 * (1.0 / whiteByQuadrature(nv, 0.16).x - 1.0); };
+    EXPECT_NEAR(a.specular.x / gain(0.8), b.specular.x / gain(0.3), 1e-3 * a.specular.x);
 }
 
 TEST(Brdf, VisibleNormalSamplesAgreeWithQuadrature)

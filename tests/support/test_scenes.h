@@ -112,35 +112,74 @@ inline Mean meanOf(const ImageSet& images, const char* layer)
     return {sum / n, std::sqrt(std::max(0.0, squares / n - sum / n * sum / n) / n)};
 }
 
-/// The project's reflection model at roughness 1, in double from its definition: there GGX is 1/pi and Smith's visibility 0.5/(nl + nv).
+/// The project's reflection model at roughness 1, in double from its definitions: there GGX is 1/pi and Smith's visibility 0.5/(nl + nv).
+/// The gain is Turquin's (2019), the share that is left to the diffuse lobe Kulla and Conty's (2017).
 struct RoughModel
 {
     double baseColor;
     double metallic = 0.0;
 
-    double fresnel(double vh) const
-    {
-        const double f0 = 0.04 * (1.0 - metallic) + baseColor * metallic;
-        return f0 + (1.0 - f0) * std::pow(1.0 - vh, 5.0);
-    }
-    double diffuse(double vh) const { return baseColor * (1.0 - metallic) / std::numbers::pi * (1.0 - fresnel(vh)); }
-    double specular(double vh, double nl, double nv) const { return fresnel(vh) / std::numbers::pi * 0.5 / (nl + nv); }
+    static constexpr double kAtNormal = 0.04; // a dielectric's reflectance
+    static constexpr int kSteps = 64;         // of the midpoint rules
+
+    static double schlick(double vh) { return std::pow(1.0 - vh, 5.0); }
     static double cosineToHalf(double nl, double nv, double phi)
     {
         const double vl = nl * nv + std::sqrt((1.0 - nl * nl) * (1.0 - nv * nv)) * std::cos(phi);
         return std::sqrt(0.5 * (1.0 + vl));
     }
+    /// Of white light, what a white lobe reflects at once: the integral of nl / (nl + nv) over nl.
+    static double white(double nv) { return 1.0 - nv * std::log(1.0 + 1.0 / nv); }
+    /// The same weighted by (1 - v.h)^5.
+    static double edge(double nv)
+    {
+        double sum = 0.0;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j)
+            {
+                const double nl = (i + 0.5) / kSteps;
+                sum += schlick(cosineToHalf(nl, nv, std::numbers::pi * (j + 0.5) / kSteps)) * nl / (nl + nv);
+            }
+        return sum / (kSteps * kSteps);
+    }
+    static double gain(double color, double nv) { return 1.0 + color * (1.0 / white(nv) - 1.0); }
+    /// Of white light, what a lobe of this colour at normal incidence reflects.
+    static double reflected(double color, double nv) { return (color * white(nv) + (1.0 - color) * edge(nv)) * gain(color, nv); }
+    static double meanReflected(double color)
+    {
+        double sum = 0.0;
+        for (int i = 0; i < kSteps; ++i) sum += 2.0 * (i + 0.5) / kSteps / kSteps * reflected(color, (i + 0.5) / kSteps);
+        return sum;
+    }
+    double diffuse(double nl, double nv) const
+    {
+        static const double mean = meanReflected(kAtNormal);
+        return baseColor * (1.0 - metallic) / std::numbers::pi * (1.0 - reflected(kAtNormal, nl)) * (1.0 - reflected(kAtNormal, nv)) /
+               (1.0 - mean);
+    }
+    double specular(double vh, double nl, double nv) const
+    {
+        const auto lobe = [&](double color) { return (color + (1.0 - color) * schlick(vh)) * gain(color, nv); };
+        return ((1.0 - metallic) * lobe(kAtNormal) + metallic * lobe(baseColor)) / std::numbers::pi * 0.5 / (nl + nv);
+    }
     /// Integral over phi of both lobes, (nl, nv).
     double ring(double nl, double nv) const
     {
-        constexpr int kSteps = 64;
         double sum = 0.0;
-        for (int i = 0; i < kSteps; ++i)
-        {
-            const double vh = cosineToHalf(nl, nv, 2.0 * std::numbers::pi * (i + 0.5) / kSteps);
-            sum += diffuse(vh) + specular(vh, nl, nv);
-        }
-        return sum * 2.0 * std::numbers::pi / kSteps;
+        for (int i = 0; i < kSteps; ++i) sum += specular(cosineToHalf(nl, nv, 2.0 * std::numbers::pi * (i + 0.5) / kSteps), nl, nv);
+        return 2.0 * std::numbers::pi * (sum / kSteps + diffuse(nl, nv));
+    }
+    /// Of white light from all sides, what goes to all sides.
+    double hemisphericalAlbedo() const
+    {
+        return baseColor * (1.0 - metallic) * (1.0 - meanReflected(kAtNormal)) + (1.0 - metallic) * meanReflected(kAtNormal) +
+               metallic * meanReflected(baseColor);
+    }
+    /// The base colour of the dielectric that reflects so much.
+    static float baseColorOf(double albedo)
+    {
+        const double specular = meanReflected(kAtNormal);
+        return float((albedo - specular) / (1.0 - specular));
     }
 };
 

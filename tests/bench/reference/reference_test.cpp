@@ -51,7 +51,7 @@ TEST(Reference, SunOnAPlaneIsExact)
         const Reference r = render(scene, settings);
         const double vh = test::RoughModel::cosineToHalf(nl, nv, std::numbers::pi / 2);
         const test::RoughModel model{0.5};
-        const double expected = (model.diffuse(vh) + model.specular(vh, nl, nv)) * nl * 3.0;
+        const double expected = (model.diffuse(nl, nv) + model.specular(vh, nl, nv)) * nl * 3.0;
         EXPECT_NEAR(meanOf(r.images, "direct").value, expected, 1e-3 * expected);
         EXPECT_EQ(meanOf(r.images, "diffuse_indirect").value, 0.0);
         EXPECT_NEAR(meanOf(r.images, "depth").value, std::sqrt(2.0), 1e-3);
@@ -65,7 +65,7 @@ TEST(Reference, PointLightFallsOffWithTheSquareAndIsShadowed)
     const ReferenceSettings settings = view({0, 1, 1}, vec3(0.0f), 2, 1, 1e-4f);
     const double nv = std::sqrt(0.5), vh = test::RoughModel::cosineToHalf(1.0, nv, 0.0);
     const test::RoughModel model{0.5};
-    const double expected = (model.diffuse(vh) + model.specular(vh, 1.0, nv)) * 8.0 / 4.0;
+    const double expected = (model.diffuse(1.0, nv) + model.specular(vh, 1.0, nv)) * 8.0 / 4.0;
     EXPECT_NEAR(meanOf(render(scene, settings).images, "direct").value, expected, 1e-3 * expected);
     addQuad(scene, {0, 1.5f, 0}, {0, 0, 0.1f}, {0.1f, 0, 0}, 0);
     EXPECT_EQ(meanOf(render(scene, settings).images, "direct").value, 0.0);
@@ -79,7 +79,7 @@ TEST(Reference, UniformSkyGivesTheDirectionalAlbedo)
     const Reference r = render(scene, view({0, 1, 1}, vec3(0.0f), 32, 256));
     const test::RoughModel model{0.6};
     double albedo = 0.0;
-    for (int i = 0; i < 2000; ++i) albedo += model.ring((i + 0.5) / 2000, std::sqrt(0.5)) * (i + 0.5) / 2000 / 2000;
+    for (int i = 0; i < 200; ++i) albedo += model.ring((i + 0.5) / 200, std::sqrt(0.5)) * (i + 0.5) / 200 / 200;
     const test::Mean beauty = meanOf(r.images, "beauty");
     EXPECT_LT(beauty.error, 0.005);
     EXPECT_NEAR(beauty.value, 2.0 * albedo, 4.0 * beauty.error + 1e-3);

@@ -157,7 +157,6 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"The list of lights", "from the host, as the vertices"},
         {"frame view", "from the host, which refuses such cameras"},
         {"light field block", "from the host, checked"},
-        {"environment BRDF", "a table from the host"},
         {"probe distances", "baked, or from a file that was checked"},
         {"probe radiance", "as distances"},
         {"probe irradiance", "as distances"},
