@@ -67,13 +67,32 @@ SCONCE_FN vec2 probeMoments(uint probe, vec3 d)
            taps.weight.z * texelMoments(probe, taps.texel.z) + taps.weight.w * texelMoments(probe, taps.texel.w);
 }
 
-/// The plane of the surfel that a probe sees in a direction (cube chart): dot(plane, p) is 1 for the points p of it, relative to the probe's
-/// centre, less before it, and more behind it. 0 for sky, and where nothing is known.
+SCONCE_CONST real kFacesTooLittle = real(0.02); // cosine of a surfel to its probe below which its plane says nothing; as bake_octahedral.comp's
+
+/// planeSeen of an octahedral map, whose texels hold distances and normals.
+SCONCE_FN vec3 planeOfDistance(uint probe, vec3 direction)
+{
+    real size = real(field.faceSize);
+    vec2 at = octahedralFromDirection(direction) * size;
+    real x = clamp(floor(at.x), real(0.0), size - real(1.0));
+    real y = clamp(floor(at.y), real(0.0), size - real(1.0));
+    uint word = distanceWord(mapWords(probe, 0) + uint(y) * field.faceSize + uint(x));
+    real r = halfToReal(word);
+    if ((word & 0xffffu) == 0x7c00u || !(r > real(0.0))) return vec3(real(0.0));
+    vec3 middle = directionFromOctahedral(vec2((x + real(0.5)) / size, (y + real(0.5)) / size));
+    vec3 normal = unpackNormal8(word >> 16);
+    real facing = dot(normal, middle);
+    return abs(facing) > kFacesTooLittle ? normal / (r * facing) : middle / r;
+}
+
+/// The plane of the surfel that a probe sees in a direction: dot(plane, p) is 1 for the points p of it, relative to the probe's centre, less
+/// before it, and more behind it. 0 for sky, and where nothing is known.
 SCONCE_FN vec3 planeSeen(uint probe, vec3 direction)
 {
+    if (onOctahedron()) return dot(direction, direction) > real(1e-12) ? planeOfDistance(probe, direction) : vec3(real(0.0));
     int face = dominantFace(direction);
     vec3 uvw = faceCoordinates(face, direction);
-    if (field.chart != kChartCube || !(uvw.z > real(1e-6))) return vec3(real(0.0));
+    if (!(uvw.z > real(1e-6))) return vec3(real(0.0));
     real middle = real(0.5) * real(field.faceSize);
     real last = real(field.faceSize) - real(1.0);
     real x = clamp(floor(middle * (uvw.x / uvw.z + real(1.0))), real(0.0), last);
@@ -182,6 +201,9 @@ SCONCE_FN bool canGather(vec3 point, vec3 normal)
 // 2 to 4, squared or not, were tried: all mend a probe in a gap, this one costs the others least (docs/light.md).
 SCONCE_CONST real kCarried = real(4.0);
 
+/// Angle of a probe's texel, radians: the root of its share of the sphere.
+SCONCE_FN real texelAngle() { return (onOctahedron() ? real(3.545) : real(1.447)) / real(field.faceSize); }
+
 /// The say of a probe in the light at a surface point, above 0: all are summed before they are divided by, so that a leaf behind a wall, whose
 /// probes are all hidden, has none. Wrapped cosine towards the probe (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with
 /// Ray-Traced Irradiance Fields"), Chebyshev visibility from the distance moments (McGuire et al. 2017, section 5.2; cubed as in the former),
@@ -192,8 +214,9 @@ SCONCE_CONST real kCarried = real(4.0);
 /// Cost: 5 reads.
 SCONCE_FN real weightOfProbe(uint probe, vec3 point, vec3 normal)
 {
-    vec3 biased = point + real(0.002) * real(field.diagonal) * normal;
-    vec3 toProbe = vec3(probeHeader(probe).centre) - biased;
+    // Off its surface by a texel: what the maps can tell the surface's own distance from.
+    vec3 centre = vec3(probeHeader(probe).centre);
+    vec3 toProbe = centre - point - texelAngle() * length(centre - point) * normal;
     real distance2 = max(dot(toProbe, toProbe), real(1e-12));
     real distance = sqrt(distance2);
     vec3 direction = distance2 > real(1e-12) ? toProbe / distance : normal; // at the centre any direction will do

@@ -50,8 +50,8 @@ SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction, vec3 normal)
 }
 
 /// Whether light that comes against `direction` (unit) from `distance` metres off, or further than the field goes, reaches a world-space point:
-/// a shadow ray. What the field shows within a 500th of its diagonal of the light is the light's own surface; a ray that no probe can answer
-/// is blocked. Cost: that of queryRay at most, and no radiance is read.
+/// a shadow ray. What a probe shows within two of its texels of the light is the light's own surface; a ray that no probe can answer is
+/// blocked. Cost: that of queryRay at most, and no radiance is read.
 SCONCE_FN bool lightReaches(vec3 point, vec3 direction, real distance_, vec3 normal)
 {
     RayState r = startRay((point - vec3(field.origin)) / real(field.scale), direction, normal);
@@ -59,7 +59,10 @@ SCONCE_FN bool lightReaches(vec3 point, vec3 direction, real distance_, vec3 nor
     r.ray.tMax = min(r.ray.tMax, last);
     int limit = turnLimit();
     for (int i = 0; i < limit && r.phase != kPhaseDone; ++i) turn(r);
-    return r.status == kMiss || (r.phase == kPhaseDone && r.t >= last - real(0.002) * real(field.diagonal));
+    if (r.status == kMiss) return true;
+    if (r.phase != kPhaseDone || r.surfel.probe == kNoProbe) return false;
+    real away = length(r.ray.origin + r.t * r.ray.direction - vec3(probeHeader(r.surfel.probe).centre));
+    return r.t >= last - real(2.0) * texelAngle() * away;
 }
 
 SCONCE_FN RayHit queryRay(vec3 origin, vec3 direction) { return queryRay(origin, direction, vec3(real(0.0))); }
