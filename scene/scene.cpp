@@ -101,7 +101,9 @@ std::string materialFault(const Scene& scene, const Material& material)
     if (!inUnitRange(material.roughness)) return fmt::format("has roughness {:f}; give a value in [0,1]", material.roughness);
     if (!nonNegative(material.emission)) return "has an emission that is negative or not finite; give radiance from 0 up";
     if (!(material.alphaCutoff >= 0.0f) || !std::isfinite(material.alphaCutoff)) return "has a bad alpha cutoff; give 0 (opaque) or more";
-    for (const TextureRef* texture : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.emissionTexture})
+    if (!std::isfinite(material.normalStrength)) return "has a normal strength that is not finite; give 1 for the texture's own";
+    for (const TextureRef* texture :
+         {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.emissionTexture, &material.normalTexture})
         if (const std::string fault = textureFault(scene, *texture); !fault.empty()) return fault;
     return {};
 }
@@ -188,6 +190,41 @@ SurfacePoint evaluateMaterial(const Scene& scene, uint32_t material, vec2 uv)
     const vec4 metallicRoughness = sampleTexture(scene, m.metallicRoughnessTexture, uv, false);
     return {m.baseColor * sampleTexture(scene, m.baseColorTexture, uv, true), m.metallic * metallicRoughness.b,
             m.roughness * metallicRoughness.g, m.emission * vec3(sampleTexture(scene, m.emissionTexture, uv, true))};
+}
+
+float coverage(const Scene& scene, uint32_t material, vec2 uv)
+{
+    const Material& m = scene.materials[material];
+    if (!m.blended && m.alphaCutoff <= 0.0f) return 1.0f;
+    const float alpha = m.baseColor.a * sampleTexture(scene, m.baseColorTexture, uv, true).a;
+    return m.blended ? std::clamp(alpha, 0.0f, 1.0f) : alpha < m.alphaCutoff ? 0.0f : 1.0f;
+}
+
+vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv)
+{
+    const Material& m = scene.materials[material];
+    return m.normalTexture.image < 0 ? vec3(0.5f, 0.5f, 1.0f) : vec3(sampleTexture(scene, m.normalTexture, uv, false));
+}
+
+vec3 meanEmission(const Scene& scene, uint32_t triangle)
+{
+    const uint32_t index = scene.triangleMaterial[triangle];
+    const Material& material = scene.materials[index];
+    if (material.emission == vec3(0.0f)) return vec3(0.0f);
+    const bool opaque = !material.blended && material.alphaCutoff <= 0.0f;
+    if (opaque && material.emissionTexture.image < 0) return material.emission;
+    const uvec3 corners = scene.triangles[triangle];
+    constexpr int kSteps = 6;
+    vec3 sum(0.0f);
+    int count = 0;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; i + j < kSteps; ++j, ++count)
+        {
+            const float u = (float(i) + 1.0f / 3.0f) / kSteps, v = (float(j) + 1.0f / 3.0f) / kSteps;
+            const vec2 uv = scene.uvs[corners.x] * (1.0f - u - v) + scene.uvs[corners.y] * u + scene.uvs[corners.z] * v;
+            sum += coverage(scene, index, uv) * evaluateMaterial(scene, index, uv).emission;
+        }
+    return sum / float(count);
 }
 
 std::string validate(const Scene& scene)

@@ -47,8 +47,8 @@ struct TextureRef
 };
 
 /// glTF metallic-roughness. Every surface is lit and seen from both sides (real assets are not watertight), unless Scene::twoSided
-/// says otherwise; doubleSided is kept for reports. Alpha: a point is there when alpha >= alphaCutoff, else it is not there at all; BLEND
-/// is imported as a cutoff of 0.5.
+/// says otherwise; doubleSided is kept for reports. Alpha: a point is there when alpha >= alphaCutoff, else it is not there at all; of a blended
+/// material each ray, texel and pixel draws a lot whether it is there, with alpha as the chance.
 struct Material
 {
     std::string name;
@@ -59,7 +59,10 @@ struct Material
     TextureRef metallicRoughnessTexture; // g roughness, b metallic
     vec3 emission{0.0f};                 // radiance, W/(m^2 sr), emissive factor times KHR_materials_emissive_strength
     TextureRef emissionTexture;
-    float alphaCutoff = 0.0f; // 0: opaque
+    TextureRef normalTexture;    // tangent space, as glTF's: +y along decreasing v
+    float normalStrength = 1.0f; // scales the texture's x and y
+    float alphaCutoff = 0.0f;    // 0: opaque; without a say where blended
+    bool blended = false;        // light passes by 1 - alpha
     bool doubleSided = false;
 };
 
@@ -137,6 +140,15 @@ struct SurfacePoint
     vec3 emission;
 };
 SurfacePoint evaluateMaterial(const Scene& scene, uint32_t material, vec2 uv);
+
+/// How much of a point is there, [0,1]: 1 or 0 by the cutoff, alpha of a blended material.
+float coverage(const Scene& scene, uint32_t material, vec2 uv);
+
+/// The normal texture's value at a uv, [0,1]; (0.5, 0.5, 1) where there is none.
+vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv);
+
+/// Mean radiance that a triangle emits, over all of its area: points that are not there emit nothing. By 21 points where textures have a say.
+vec3 meanEmission(const Scene& scene, uint32_t triangle);
 
 /// Checks what every later stage relies on: array lengths agree, indices in range, all numbers finite, normals unit. A host calls it on
 /// its own scenes. Returns the sentence of the first fault, or an empty string.

@@ -513,7 +513,8 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
     piece.material = *material;
     piece.triangles = trianglesOf(mode, *corners);
     const Material& surface = scene.materials[*material];
-    if (surface.alphaCutoff > 0.0f && surface.baseColorTexture.image < 0 && surface.baseColor.a < surface.alphaCutoff)
+    const bool never = surface.blended ? surface.baseColor.a <= 0.0f : surface.baseColor.a < surface.alphaCutoff;
+    if (never && surface.baseColorTexture.image < 0)
     {
         // An empty piece is kept, so that each of its instances is counted among the triangles that are told of as hidden.
         piece.hidden = piece.triangles.size(); // never there, by its constant alpha
@@ -588,8 +589,7 @@ Result<uint32_t> Importer::materialOf(int index)
     m.roughness = clamped(pbr.roughnessFactor);
     m.doubleSided = source.doubleSided;
     if (source.alphaMode == "MASK") m.alphaCutoff = float(std::max(source.alphaCutoff, 0.0));
-    // Nothing here blends: what is more opaque than not is solid, the rest is not there.
-    if (source.alphaMode == "BLEND") m.alphaCutoff = 0.5f;
+    m.blended = source.alphaMode == "BLEND";
     double strength = 1.0;
     if (const auto it = source.extensions.find("KHR_materials_emissive_strength"); it != source.extensions.end())
         strength = std::max(numberOr(it->second, "emissiveStrength", 1.0), 0.0);
@@ -609,7 +609,9 @@ Result<uint32_t> Importer::materialOf(int index)
                                    m.emissionTexture, uvSet);
             !s)
             return s.error();
-    if (source.normalTexture.index >= 0) note("Normal textures are ignored.");
+    const tg::NormalTextureInfo& bump = source.normalTexture;
+    if (Status s = readTexture(bump.extensions, bump.index, bump.texCoord, m.normalTexture, uvSet); !s) return s.error();
+    m.normalStrength = float(bump.scale);
     if (source.occlusionTexture.index >= 0) note("Occlusion textures are ignored; occlusion is computed.");
     scene.materials.push_back(std::move(m));
     uvSets.push_back(std::max(uvSet, 0));
@@ -786,7 +788,7 @@ Result<Scene> Importer::run(std::string name)
         scene.warnings.push_back(count == 1 ? sentence : fmt::format("{} ({} times)", sentence, count));
     if (degenerate > 0) scene.warnings.push_back(fmt::format("{} triangles without area were dropped.", degenerate));
     if (invisible > 0)
-        scene.warnings.push_back(fmt::format("{} triangles whose constant alpha lies below the cutoff were dropped.", invisible));
+        scene.warnings.push_back(fmt::format("{} triangles that their constant alpha takes away were dropped.", invisible));
     if (scene.triangles.empty()) scene.warnings.push_back("The scene has no triangles; check that its default scene holds meshes.");
     if (const std::string fault = validate(scene); !fault.empty()) return bad(fault);
     return std::move(scene);

@@ -1,12 +1,14 @@
 #include "scene/triangle_rays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "scene/closest_point.h"
 
 namespace sconce
@@ -40,12 +42,12 @@ std::vector<Presence> trianglePresence(const Scene& scene)
     for (size_t index = 0; index < scene.materials.size(); ++index)
     {
         const Material& material = scene.materials[index];
-        if (material.alphaCutoff <= 0.0f) continue;
+        if (material.alphaCutoff <= 0.0f && !material.blended) continue;
         float low, high;
         alphaRange(scene, material, low, high);
-        if (high < material.alphaCutoff)
+        if (material.blended ? high <= 0.0f : high < material.alphaCutoff)
             ofMaterial[index] = Presence::absent;
-        else if (low < material.alphaCutoff)
+        else if (low < (material.blended ? 1.0f : material.alphaCutoff))
             ofMaterial[index] = Presence::masked;
     }
     std::vector<Presence> presence(scene.triangles.size(), Presence::solid);
@@ -77,7 +79,17 @@ struct TriangleRays::State
 namespace
 {
 
-/// Embree asks here about every hit on a masked triangle: texels below the cutoff are not there.
+/// A ray's lot on a triangle, [0,1): by its bits, so that a ray asked again answers alike, and layers behind each other draw their own.
+float lotOf(RTCRayN* ray, unsigned int count, unsigned int lane, uint32_t triangle)
+{
+    uint64_t seed = triangle;
+    for (const float part : {RTCRayN_org_x(ray, count, lane), RTCRayN_org_y(ray, count, lane), RTCRayN_org_z(ray, count, lane),
+                             RTCRayN_dir_x(ray, count, lane), RTCRayN_dir_y(ray, count, lane), RTCRayN_dir_z(ray, count, lane)})
+        seed = Random(seed, std::bit_cast<uint32_t>(part)).bits();
+    return Random(seed, 0).uniform();
+}
+
+/// Embree asks here about every hit on a masked triangle: what alpha takes away is not there.
 template <class State> void alphaFilter(const RTCFilterFunctionNArguments* args)
 {
     const State& state = *static_cast<const State*>(args->geometryUserPtr);
@@ -91,7 +103,8 @@ template <class State> void alphaFilter(const RTCFilterFunctionNArguments* args)
         const float v = RTCHitN_v(args->hit, args->N, lane);
         const vec2 uv = (1.0f - u - v) * scene.uvs[corners.x] + u * scene.uvs[corners.y] + v * scene.uvs[corners.z];
         const uint32_t material = scene.triangleMaterial[triangle];
-        if (evaluateMaterial(scene, material, uv).baseColor.a < scene.materials[material].alphaCutoff) args->valid[lane] = 0;
+        const float there = coverage(scene, material, uv);
+        if (there <= 0.0f || (there < 1.0f && there <= lotOf(args->ray, args->N, lane, triangle))) args->valid[lane] = 0;
     }
 }
 

@@ -13,7 +13,7 @@
 namespace sconce
 {
 
-/// Whether a triangle is there at all (Material: a point is there when alpha >= alphaCutoff).
+/// Whether a triangle is there at all, by its material's alpha.
 enum class Presence : uint8_t
 {
     absent, // clear glass and the like: alpha is below the cutoff everywhere

@@ -16,16 +16,18 @@ layout(location = 0) out uvec4 outSurface;
 void main()
 {
     vec2 uvDx = dFdx(uv), uvDy = dFdy(uv);
-    vec3 across = cross(dFdx(relative), dFdy(relative));
+    vec3 relativeDx = dFdx(relative), relativeDy = dFdy(relative);
+    vec3 across = cross(relativeDx, relativeDy);
 #ifdef MASKED
-    if (!isThere(material, uv, uvDx, uvDy)) discard;
+    if (!isThere(material, uv, uvDx, uvDy, gl_FragCoord)) discard;
 #endif
     float area = dot(across, across);
     vec3 geometric = area > 0.0 ? across * inversesqrt(area) : -normalize(relative); // edge-on: some finite normal
     if (dot(geometric, relative) > 0.0) geometric = -geometric;
     float lengthSquared = dot(normal, normal);
-    vec3 shading = lengthSquared > 1e-12 ? normal * inversesqrt(lengthSquared) : geometric;
-    if (dot(shading, geometric) < 0.0) shading = -shading;
+    vec3 smooth_ = lengthSquared > 1e-12 ? normal * inversesqrt(lengthSquared) : geometric;
+    vec3 shading = mappedNormal(material, uv, uvDx, uvDy, smooth_, relativeDx, relativeDy);
+    if (dot(smooth_, geometric) < 0.0) shading = -shading;
     SurfacePoint surface = evaluateMaterial(material, uv, uvDx, uvDy);
     vec3 albedo = hemisphericalAlbedo(BrdfSurface(clamp(surface.baseColor.rgb, 0.0, 1.0), surface.metallic, surface.roughness));
     outSurface = uvec4(packRootOfColor(albedo), packUnorm2x16(octahedralFromDirection(shading)),

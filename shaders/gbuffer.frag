@@ -17,7 +17,7 @@ void main()
 {
     vec2 uvDx = dFdx(uv), uvDy = dFdy(uv);
     vec3 across = dFdx(relative), down = dFdy(relative);
-    if (!isThere(material, uv, uvDx, uvDy)) discard;
+    if (!isThere(material, uv, uvDx, uvDy, gl_FragCoord)) discard;
     SurfacePoint point = evaluateMaterial(material, uv, uvDx, uvDy);
     vec3 view = normalize(-relative);
     // Through a telescope neighbouring pixels differ by less than positions are exact to: then the plane is the vertices' word.
@@ -26,9 +26,9 @@ void main()
     vec3 smooth_ = squared > 1e-12 ? normalize(normal) : view;
     vec3 geometric = finest > 1e-11 * dot(relative, relative) && dot(plane, plane) > 1e-37 ? normalize(plane) : smooth_;
     if (dot(geometric, view) < 0.0) geometric = -geometric;
-    vec3 shading = smooth_;
-    if (dot(shading, geometric) < 0.0) shading = -shading;
-    if (dot(shading, view) <= 0.0) shading = geometric; // interpolated away from the eye
+    vec3 shading = mappedNormal(material, uv, uvDx, uvDy, smooth_, across, down);
+    if (dot(smooth_, geometric) < 0.0) shading = -shading;
+    if (dot(shading, view) <= 0.0) shading = geometric; // interpolated or bent away from the eye
     outNormalRoughness = vec4(shading, kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness);
     outBaseColorMetallic = vec4(point.baseColor.rgb, point.metallic);
     outEmission = vec4(point.emission, 1.0);

@@ -3,6 +3,7 @@
 #ifndef SCONCE_MATERIAL_GLSL
 #define SCONCE_MATERIAL_GLSL
 #include "scene.glsl"
+#include "shared/normal_map.h"
 
 struct SurfacePoint
 {
@@ -43,12 +44,36 @@ SurfacePoint evaluateMaterial(uint material, vec2 uv, vec2 uvDx, vec2 uvDy)
     return point;
 }
 
-/// Whether a point of an alpha-masked material is there at all.
-bool isThere(uint material, vec2 uv, vec2 uvDx, vec2 uvDy)
+/// The shading normal that a normal texture makes of the interpolated one; as RayScene's.
+/// @param normal              unit
+/// @param acrossX, acrossY    change of the position to the next pixel, as uvDx and uvDy
+vec3 mappedNormal(uint material, vec2 uv, vec2 uvDx, vec2 uvDy, vec3 normal, vec3 acrossX, vec3 acrossY)
 {
     GpuMaterial m = sconceMaterials[material];
-    if (m.alphaCutoff <= 0.0) return true;
-    return m.baseColor.a * sconceTexture(sconceColorTextures, m.baseColorTexture, uv, uvDx, uvDy).a >= m.alphaCutoff;
+    if (m.normalTexture.layer < 0) return normal;
+    mat2 turned = mat2(m.normalTexture.uvMatrix.xy, m.normalTexture.uvMatrix.zw);
+    vec3 read = sconceTexture(sconceDataTextures, m.normalTexture, uv, uvDx, uvDy).rgb;
+    return bentNormal(normal, uvTangents(acrossX, acrossY, turned * uvDx, turned * uvDy), read, m.normalStrength);
+}
+
+/// A fragment's lot, [0,1): by the bits of its place and depth, so that layers behind each other draw their own (PCG hash).
+float lotOf(vec4 fragment)
+{
+    uvec3 bits = uvec3(uvec2(fragment.xy), floatBitsToUint(fragment.z));
+    uint state = (bits.x * 747796405u + bits.y) * 2891336453u + bits.z;
+    state = state * 747796405u + 2891336453u;
+    uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return float(((word >> 22u) ^ word) >> 8u) / 16777216.0;
+}
+
+/// Whether a point of a masked or blended material is there at all.
+/// @param fragment  gl_FragCoord
+bool isThere(uint material, vec2 uv, vec2 uvDx, vec2 uvDy, vec4 fragment)
+{
+    GpuMaterial m = sconceMaterials[material];
+    if (m.alphaCutoff == 0.0) return true;
+    float alpha = m.baseColor.a * sconceTexture(sconceColorTextures, m.baseColorTexture, uv, uvDx, uvDy).a;
+    return m.alphaCutoff == kBlended ? alpha > lotOf(fragment) : alpha >= m.alphaCutoff;
 }
 
 #endif

@@ -8,5 +8,5 @@ layout(location = 1) flat in uint material;
 
 void main()
 {
-    if (!isThere(material, uv, dFdx(uv), dFdy(uv))) discard;
+    if (!isThere(material, uv, dFdx(uv), dFdy(uv), gl_FragCoord)) discard;
 }

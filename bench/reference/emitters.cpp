@@ -13,25 +13,11 @@ float mean(vec3 v)
     return (v.x + v.y + v.z) / 3.0f;
 }
 
-/// Mean over a regular barycentric grid. A tenth of the untextured factor is kept so that no emitting point has density 0.
-float meanEmission(const Scene& scene, uint32_t triangle)
+/// What a triangle is drawn by. A tenth of the untextured factor is kept so that no emitting point has density 0.
+float weightOf(const Scene& scene, uint32_t triangle)
 {
-    const uint32_t material = scene.triangleMaterial[triangle];
-    const float factor = mean(scene.materials[material].emission);
-    if (!(factor > 0.0f) || scene.materials[material].emissionTexture.image < 0) return factor;
-    const uvec3 corners = scene.triangles[triangle];
-    constexpr int kSteps = 6;
-    float sum = 0.0f;
-    int count = 0;
-    for (int i = 0; i < kSteps; ++i)
-        for (int j = 0; i + j < kSteps; ++j, ++count)
-        {
-            const float u = (static_cast<float>(i) + 1.0f / 3.0f) / kSteps;
-            const float v = (static_cast<float>(j) + 1.0f / 3.0f) / kSteps;
-            const vec2 uv = scene.uvs[corners.x] * (1.0f - u - v) + scene.uvs[corners.y] * u + scene.uvs[corners.z] * v;
-            sum += mean(evaluateMaterial(scene, material, uv).emission);
-        }
-    return 0.9f * sum / static_cast<float>(count) + 0.1f * factor;
+    const Material& material = scene.materials[scene.triangleMaterial[triangle]];
+    return 0.9f * mean(meanEmission(scene, triangle)) + 0.1f * mean(material.emission);
 }
 
 } // namespace
@@ -42,7 +28,7 @@ Emitters::Emitters(const Scene& lit) : scene(lit)
     double total = 0.0;
     for (uint32_t i = 0; i < scene.triangles.size(); ++i)
     {
-        const float emission = meanEmission(scene, i);
+        const float emission = weightOf(scene, i);
         if (!(emission > 0.0f)) continue;
         const uvec3 t = scene.triangles[i];
         const double area =

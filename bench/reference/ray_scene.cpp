@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shaders/shared/pure.h"
+
 namespace sconce
 {
 namespace
@@ -21,6 +23,19 @@ struct Barycentric
         return values[corners.x] * weights.x + values[corners.y] * weights.y + values[corners.z] * weights.z;
     }
 };
+
+/// The shading normal that the material's normal texture makes of the interpolated one.
+vec3 mappedNormal(const Scene& scene, const SurfaceHit& hit, vec3 smooth)
+{
+    using Text = Pure<float>;
+    const Material& material = scene.materials[hit.material];
+    if (material.normalTexture.image < 0) return smooth;
+    const uvec3 t = scene.triangles[hit.triangle];
+    const glm::mat2& turned = material.normalTexture.uvScaleRotate;
+    const auto along = Text::uvTangents(scene.positions[t.y] - scene.positions[t.x], scene.positions[t.z] - scene.positions[t.x],
+                                        turned * (scene.uvs[t.y] - scene.uvs[t.x]), turned * (scene.uvs[t.z] - scene.uvs[t.x]));
+    return Text::bentNormal(smooth, along, readNormalTexture(scene, hit.material, hit.uv), material.normalStrength);
+}
 
 } // namespace
 
@@ -56,8 +71,9 @@ std::optional<SurfaceHit> RayScene::closest(vec3 origin, vec3 direction, float t
     hit.geometricNormal = geometricNormal(scene, hit.triangle);
     const vec3 normal = point.of(scene.normals);
     const float length = glm::length(normal);
-    hit.shadingNormal = length > 1e-6f ? normal / length : hit.geometricNormal;
-    if (glm::dot(hit.shadingNormal, hit.geometricNormal) < 0.0f) hit.shadingNormal = -hit.shadingNormal;
+    const vec3 smooth = length > 1e-6f ? normal / length : hit.geometricNormal;
+    hit.shadingNormal = mappedNormal(scene, hit, smooth);
+    if (glm::dot(smooth, hit.geometricNormal) < 0.0f) hit.shadingNormal = -hit.shadingNormal;
     return hit;
 }
 

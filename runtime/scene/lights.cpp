@@ -23,28 +23,6 @@ float radicalInverse(uint32_t i, uint32_t base)
     return inverse;
 }
 
-/// Mean of a triangle's emission, by seven points of equal weight when it has a texture (its corners drawn in, edge middles, centroid).
-vec3 meanEmission(const Scene& scene, uint32_t triangle)
-{
-    const Material& material = scene.materials[scene.triangleMaterial[triangle]];
-    if (material.emission == vec3(0.0f)) return vec3(0.0f);
-    if (material.emissionTexture.image < 0) return material.emission;
-    static constexpr float kPoints[7][3] = {{0.8f, 0.1f, 0.1f},
-                                            {0.1f, 0.8f, 0.1f},
-                                            {0.1f, 0.1f, 0.8f},
-                                            {0.45f, 0.45f, 0.1f},
-                                            {0.45f, 0.1f, 0.45f},
-                                            {0.1f, 0.45f, 0.45f},
-                                            {1 / 3.0f, 1 / 3.0f, 1 / 3.0f}};
-    const uvec3 t = scene.triangles[triangle];
-    vec3 sum(0.0f);
-    for (const auto& b : kPoints)
-        sum +=
-            evaluateMaterial(scene, scene.triangleMaterial[triangle], b[0] * scene.uvs[t.x] + b[1] * scene.uvs[t.y] + b[2] * scene.uvs[t.z])
-                .emission;
-    return sum / 7.0f;
-}
-
 void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t count, LightList& list)
 {
     struct Emitter

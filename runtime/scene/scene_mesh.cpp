@@ -62,7 +62,8 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
     {
         const uvec3 corner = scene.triangles[t];
         const vec3 middle = (positions[corner.x] + positions[corner.y] + positions[corner.z]) / 3.0f;
-        order[t] = {scene.materials[scene.triangleMaterial[t]].alphaCutoff > 0.0f ? 1u : 0u, morton((middle - low) / size), t};
+        const Material& material = scene.materials[scene.triangleMaterial[t]];
+        order[t] = {material.blended || material.alphaCutoff > 0.0f ? 1u : 0u, morton((middle - low) / size), t};
     }
     mesh.twoSided = scene.twoSided;
     std::sort(order.begin(), order.end());

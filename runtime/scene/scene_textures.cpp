@@ -144,7 +144,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
     for (const Material& material : scene.materials)
     {
         if (kind == TextureKind::data)
-            use(material.metallicRoughnessTexture);
+            use(material.metallicRoughnessTexture), use(material.normalTexture);
         else
             use(material.baseColorTexture), use(material.emissionTexture);
     }
@@ -219,9 +219,10 @@ std::vector<gpu::GpuMaterial> gpuMaterials(const Scene& scene, const TextureArra
 {
     std::vector<gpu::GpuMaterial> materials;
     for (const Material& material : scene.materials)
-        materials.push_back({material.baseColor, material.emission, material.metallic, material.roughness, material.alphaCutoff,
+        materials.push_back({material.baseColor, material.emission, material.metallic, material.roughness,
+                             material.blended ? gpu::kBlended : material.alphaCutoff, material.normalStrength,
                              gpuTexture(material.baseColorTexture, color), gpuTexture(material.metallicRoughnessTexture, data),
-                             gpuTexture(material.emissionTexture, color)});
+                             gpuTexture(material.emissionTexture, color), gpuTexture(material.normalTexture, data)});
     return materials;
 }
 

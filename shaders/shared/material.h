@@ -8,7 +8,7 @@ struct GpuTexture
 {
     vec4 uvMatrix; // columns of TextureRef::uvScaleRotate
     vec2 uvOffset;
-    int layer; // of the colour array (base colour, emission) or the data array (metallic-roughness); -1: no texture
+    int layer; // of the colour array (base colour, emission) or the data array (metallic-roughness, normal); -1: no texture
     uint wrap; // Wrap of u | Wrap of v << 2
 };
 SCONCE_CHECK_SIZE(GpuTexture, 32);
@@ -19,12 +19,16 @@ struct GpuMaterial
     vec3 emission; // W/(m^2 sr)
     float metallic;
     float roughness;
-    float alphaCutoff; // 0: opaque
+    float alphaCutoff; // 0: opaque, kBlended: alpha is a chance
+    float normalStrength;
     GpuTexture baseColorTexture;
     GpuTexture metallicRoughnessTexture;
     GpuTexture emissionTexture;
+    GpuTexture normalTexture;
 };
-SCONCE_CHECK_SIZE(GpuMaterial, 136);
+SCONCE_CHECK_SIZE(GpuMaterial, 172);
+
+const float kBlended = -1.0f;
 
 SCONCE_STRUCTS_END
 #endif

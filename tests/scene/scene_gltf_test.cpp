@@ -219,13 +219,40 @@ TEST_F(SceneGltf, MaterialFactorsAndEmissiveStrength)
 TEST_F(SceneGltf, ConstantAlphaBelowTheCutoffIsNotThere)
 {
     triangle();
+    gltf["materials"] = Json::array({{{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1}}}}}});
+    primitive()["material"] = 0;
+    const Scene holes = load();
+    EXPECT_TRUE(holes.triangles.empty());
+    EXPECT_TRUE(warned(holes, "1 triangles that their constant alpha"));
+    gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.6;
+    EXPECT_EQ(load().triangles.size(), 1u);
+}
+
+TEST_F(SceneGltf, BlendedMaterialsKeepTheirAlpha)
+{
+    triangle();
     gltf["materials"] = Json::array({{{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1}}}}}});
     primitive()["material"] = 0;
     const Scene glass = load();
-    EXPECT_TRUE(glass.triangles.empty());
-    EXPECT_TRUE(warned(glass, "1 triangles whose constant alpha"));
-    gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.6;
-    EXPECT_EQ(load().triangles.size(), 1u);
+    ASSERT_EQ(glass.triangles.size(), 1u);
+    EXPECT_TRUE(glass.materials[0].blended);
+    EXPECT_FLOAT_EQ(coverage(glass, 0, vec2(0.5f)), 0.1f);
+    gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.0;
+    EXPECT_TRUE(load().triangles.empty());
+}
+
+TEST_F(SceneGltf, NormalTexturesAreReadWithTheirScale)
+{
+    triangle();
+    write("bumps.png", test::pngBytes(1, 1, {255, 128, 128, 255}));
+    gltf["images"] = Json::array({{{"uri", "bumps.png"}}});
+    gltf["textures"] = Json::array({{{"source", 0}}});
+    gltf["materials"] = Json::array({{{"normalTexture", {{"index", 0}, {"scale", 0.25}}}}});
+    primitive()["material"] = 0;
+    const Scene scene = load();
+    EXPECT_EQ(scene.materials[0].normalTexture.image, 0);
+    EXPECT_FLOAT_EQ(scene.materials[0].normalStrength, 0.25f);
+    EXPECT_EQ(readNormalTexture(scene, 0, vec2(0.5f)), vec3(255.0f, 128.0f, 128.0f) / 255.0f);
 }
 
 TEST_F(SceneGltf, TexturesWithTransformWrapAndSecondUvs)

@@ -51,6 +51,33 @@ TEST(SceneGeometry, NormalFollowsTheWinding)
     EXPECT_EQ(geometricNormal(scene, 0), vec3(0, 1, 0)) << "degenerate";
 }
 
+TEST(SceneMaterial, CoverageIsTheCutoffsOrAlphas)
+{
+    Scene scene = textured(Wrap::clamp); // alpha 0 at u = 0.25, 1 at u = 0.75
+    EXPECT_EQ(coverage(scene, 0, {0.3f, 0.5f}), 1.0f) << "opaque";
+    scene.materials[0].alphaCutoff = 0.5f;
+    EXPECT_EQ(coverage(scene, 0, {0.4f, 0.5f}), 0.0f);
+    EXPECT_EQ(coverage(scene, 0, {0.6f, 0.5f}), 1.0f);
+    scene.materials[0].blended = true;
+    scene.materials[0].baseColor.a = 0.5f;
+    EXPECT_FLOAT_EQ(coverage(scene, 0, {0.6f, 0.5f}), 0.35f);
+}
+
+// Of a lamp cut in half, what is not there emits nothing.
+TEST(SceneMaterial, MeanEmissionLeavesOutWhatAlphaTakesAway)
+{
+    Scene scene = textured(Wrap::clamp);
+    scene.uvs = {{0.0f, 0.5f}, {1.0f, 0.5f}, {0.0f, 0.5f}}; // u grows along one edge; half of u covers 3/4 of the area
+    scene.materials[0].emission = vec3(4.0f, 2.0f, 0.0f);
+    EXPECT_EQ(meanEmission(scene, 0), vec3(4.0f, 2.0f, 0.0f));
+    scene.materials[0].alphaCutoff = 0.5f;
+    EXPECT_NEAR(meanEmission(scene, 0).r, 0.25f * 4.0f, 0.2f);
+    scene.materials[0].blended = true;
+    EXPECT_NEAR(meanEmission(scene, 0).r, 4.0f * 26.0f / 96.0f, 0.1f); // of the ramp from 0.25 to 0.75, times 2 (1 - u)
+    scene.materials[0].baseColor.a = 0.0f;
+    EXPECT_EQ(meanEmission(scene, 0), vec3(0.0f));
+}
+
 TEST(SceneGeometry, BoundsOfNothingAreEmpty)
 {
     EXPECT_TRUE(Scene().bounds().empty());

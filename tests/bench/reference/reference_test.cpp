@@ -71,6 +71,26 @@ TEST(Reference, PointLightFallsOffWithTheSquareAndIsShadowed)
     EXPECT_EQ(meanOf(render(scene, settings).images, "direct").value, 0.0);
 }
 
+// Two panes that let 0.3 and 0.5 of the light through, each by its own lot.
+TEST(Reference, BlendedPanesPassLightByTheirAlpha)
+{
+    Scene scene = floorUnder(0.5f);
+    scene.lights.push_back(test::light(LightType::directional, vec3(0.0f), {0, -1, 0}, 2.0f));
+    const ReferenceSettings settings = view({0, 1, 1}, vec3(0.0f), 16, 64, 1e-3f);
+    const double open = meanOf(render(scene, settings).images, "direct").value;
+    for (const float passes : {0.3f, 0.5f})
+    {
+        Material pane = plain(vec3(0.0f), 1.0f);
+        pane.baseColor.a = 1.0f - passes;
+        pane.blended = true;
+        scene.materials.push_back(pane);
+        addQuad(scene, {0, 3.0f + passes, 0}, {0, 0, 2}, {2, 0, 0}, uint32_t(scene.materials.size() - 1));
+    }
+    const test::Mean through = meanOf(render(scene, settings).images, "direct");
+    EXPECT_LT(through.error, 0.02 * open);
+    EXPECT_NEAR(through.value, 0.15 * open, 4.0 * through.error);
+}
+
 // Under a uniform sky a convex surface shows its directional albedo times the sky.
 TEST(Reference, UniformSkyGivesTheDirectionalAlbedo)
 {

@@ -373,6 +373,32 @@ TEST_F(Bake, AlphaMaskedHoleLetsTheViewAndTheSunThrough)
     EXPECT_EQ(radianceAt(field, texelAt(field, {1.0f, -1, 0.1f})), vec3(0.0f)) << "below the cloth";
 }
 
+TEST_F(Bake, BlendedPaneLetsTheViewAndTheSunThroughByItsAlpha)
+{
+    Scene scene = emptyScene();
+    Material pane;
+    pane.baseColor = {0.0f, 0.0f, 0.0f, 0.3f};
+    pane.blended = true;
+    scene.materials.push_back(pane);
+    addQuad(scene, {-4, 0, -4}, {0, 0, 8}, {8, 0, 0});
+    addQuad(scene, {-4, 2, -4}, {8, 0, 0}, {0, 0, 8}, 1);
+    scene.lights.push_back(sun({0.0f, -1.0f, 0.0f}, vec3(3.0f)));
+    const FieldData field = bake(scene, {vec3(0.0f, 1.0f, 0.0f)}, settingsFor(128));
+    const vec3 open = albedoOf(scene.materials[0]) * 3.0f / kPi;
+    int above = 0, glass = 0, below = 0;
+    double lit = 0.0;
+    forEachTexel(field,
+                 [&](Texel t)
+                 {
+                     const vec3 d = towards(field, t);
+                     const float reach = std::max(std::abs(d.x), std::abs(d.z));
+                     if (d.y > 0.4f * reach) ++above, glass += wordAt(field, t) != 0u;
+                     if (d.y < -0.4f * reach) ++below, lit += radianceAt(field, t).g / open.g;
+                 });
+    EXPECT_NEAR(double(glass) / above, 0.3, 0.02);
+    EXPECT_NEAR(lit / below, 0.7, 0.03);
+}
+
 TEST_F(Bake, TexturedSurfaceShowsItsDecodedColour)
 {
     Scene scene = emptyScene();

@@ -182,6 +182,43 @@ TEST_F(SceneRendererTest, GBufferIsWhatThePathTracerSees)
     EXPECT_LT(direct, 3 * pixels / 25) << "the sun's shadow map is a texel wide of the truth along shadows' edges";
 }
 
+// A floor of ripples that are a texture: the frame's normals are the path tracer's.
+TEST_F(SceneRendererTest, NormalTexturesBendTheGBufferAsThePathTracer)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box({-1, -0.1f, -1}, {1, 0, 1}, mesh.material("rippled", vec3(0.5f)));
+    Image ripples{"ripples", 64, 64, {}};
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+        {
+            const vec3 n = glm::normalize(vec3(0.5f * std::sin(0.2f * float(x)), 0.3f * std::sin(0.1f * float(y)), 1.0f));
+            for (int c = 0; c < 3; ++c) ripples.rgba.push_back(uint8_t(std::lround(127.5f * n[c] + 127.5f)));
+            ripples.rgba.push_back(255);
+        }
+    scene.images.push_back(ripples);
+    scene.materials[0].normalTexture.image = 0;
+    scene.materials[0].normalTexture.uvScaleRotate = glm::mat2(0.0f, 0.5f, -0.5f, 0.0f); // turned, too
+    scene.lights.push_back(test::light(LightType::directional, vec3(0.0f), {0, -1, 0}, 1.0f));
+    scene.cameras.push_back({"above", {0, 1, 0.5f}, glm::normalize(vec3(0, -1, -0.5f)), glm::normalize(vec3(0, 0.5f, -1)), 0.8f});
+    RenderSettings settings = settingsFor();
+    settings.effects = {.diffuse = false, .rough = false, .glossy = false, .mirror = false, .denoise = false};
+    const auto frame = draw(scene, std::vector{vec3(0.0f, 1.0f, 0.5f)}, settings);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const ImageSet truth = truthOf(scene, 1);
+    size_t off = 0, bent = 0;
+    for (size_t i = 0; i < frame->normal.size(); ++i)
+    {
+        const float* expected = &truth.find("normal")->pixels[3 * i];
+        const vec3 normal(expected[0], expected[1], expected[2]);
+        if (glm::length(normal) < 0.5f) continue;
+        bent += normal.y < 0.95f && normal.y > 0.3f;
+        off += glm::length(frame->normal[i] - normal) > 0.05f;
+    }
+    EXPECT_GT(bent, frame->normal.size() / 10);
+    EXPECT_LT(off, frame->normal.size() / 50);
+}
+
 TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
