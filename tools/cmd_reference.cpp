@@ -59,7 +59,7 @@ int runReference(const ReferenceOptions& options, const Context& context)
 
 struct CompareOptions
 {
-    std::string picture, reference, metrics = "mse,relmse,psnr,flip", diff, sideBySide, layer = "beauty";
+    std::string picture, reference, metrics = "mse,relmse,psnr,flip,mean", diff, sideBySide, layer = "beauty";
     std::vector<std::string> limits;
     std::optional<float> exposure;
 };
@@ -70,13 +70,13 @@ int runCompare(const CompareOptions& options, const Context& context)
     settings.layer = options.layer;
     settings.exposure = options.exposure;
     std::map<std::string, bool*> wanted{
-        {"mse", &settings.mse}, {"relmse", &settings.relMse}, {"psnr", &settings.psnr}, {"flip", &settings.flip}};
+        {"mse", &settings.mse}, {"relmse", &settings.relMse}, {"psnr", &settings.psnr}, {"flip", &settings.flip}, {"mean", &settings.mean}};
     // All metrics are on by default, but a list means no others.
     for (auto& [name, flag] : wanted) *flag = false;
     for (const std::string& name : split(options.metrics, ','))
     {
         if (!wanted.contains(name))
-            return fail(ErrorCode::badArgument, fmt::format("--metric: there is no metric '{}'; there are mse, relmse, psnr, flip.", name));
+            return fail(ErrorCode::badArgument, fmt::format("--metric: there is no metric '{}'; there are mse, relmse, psnr, flip, mean.", name));
         *wanted[name] = true;
     }
     std::vector<std::pair<std::string, float>> limits;
@@ -86,7 +86,7 @@ int runCompare(const CompareOptions& options, const Context& context)
         const Result<std::vector<float>> value = parseNumbers(parts.back(), {1});
         if (parts.size() != 2 || !wanted.contains(parts[0]) || !value)
             return fail(ErrorCode::badArgument,
-                        fmt::format("--fail-above: '{}' is not METRIC=X with a metric of mse, relmse, psnr, flip and a number.", limit));
+                        fmt::format("--fail-above: '{}' is not METRIC=X with a metric of mse, relmse, psnr, flip, mean and a number.", limit));
         // A limit asks for its metric as well: without a number there would be nothing to compare with it.
         *wanted[parts[0]] = true;
         limits.emplace_back(parts[0], value->front());
@@ -105,7 +105,7 @@ int runCompare(const CompareOptions& options, const Context& context)
             return fail(status.error());
 
     const std::pair<const char*, std::optional<double>> values[] = {
-        {"mse", result->mse}, {"relmse", result->relMse}, {"psnr", result->psnr}, {"flip", result->flip}};
+        {"mse", result->mse}, {"relmse", result->relMse}, {"psnr", result->psnr}, {"flip", result->flip}, {"mean", result->mean}};
     Json json;
     json["width"] = result->width;
     json["height"] = result->height;
@@ -158,7 +158,7 @@ void addReferenceCommands(CLI::App& app, Context& context)
     compare
         ->add_option(
             "--metric", compareOptions->metrics,
-            described("Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), separated by commas", words("all")))
+            described("Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), mean (over the reference's), separated by commas", words("all")))
         ->type_name("LIST");
     compare
         ->add_option("--fail-above", compareOptions->limits,

@@ -66,6 +66,13 @@ double relativeMeanSquaredError(std::span<const float> a, std::span<const float>
     return sum / static_cast<double>(a.size());
 }
 
+double meanOverMean(std::span<const float> a, std::span<const float> reference)
+{
+    assert(a.size() == reference.size());
+    const double sum = std::accumulate(a.begin(), a.end(), 0.0), truth = std::accumulate(reference.begin(), reference.end(), 0.0);
+    return truth > 0.0 ? sum / truth : std::numeric_limits<double>::quiet_NaN();
+}
+
 double peakSignalToNoise(std::span<const float> a, std::span<const float> reference, float exposure)
 {
     assert(a.size() == reference.size());
@@ -108,6 +115,7 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
     const float exposure = settings.exposure.value_or(autoExposure(right));
     if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
     if (settings.relMse) result.relMse = whole ? relativeMeanSquaredError(left, right) : nan;
+    if (settings.mean) result.mean = whole ? meanOverMean(left, right) : nan;
     if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, exposure) : nan;
     if (settings.flip && whole)
     {

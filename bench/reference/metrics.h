@@ -16,6 +16,8 @@ namespace sconce
 double meanSquaredError(std::span<const float> a, std::span<const float> reference);
 /// Mean of (a - b)^2 / (b^2 + 0.01), b the reference: errors in the dark count as much as those in the light.
 double relativeMeanSquaredError(std::span<const float> a, std::span<const float> reference);
+/// Mean of all values over the reference's mean: whether there is too much light, or too little. NaN where the reference is black.
+double meanOverMean(std::span<const float> a, std::span<const float> reference);
 /// 10 log10(1 / MSE) of both pictures as shown: exposure, toneMapAces, sRGB; peak 1. +infinity when equal. Decibels.
 double peakSignalToNoise(std::span<const float> a, std::span<const float> reference, float exposure);
 
@@ -26,6 +28,7 @@ struct CompareSettings
     bool relMse = true;
     bool psnr = true;
     bool flip = true;
+    bool mean = true;
     std::optional<float> exposure; // set: PSNR and LDR-FLIP at it. Unset: PSNR at the reference's autoExposure, and HDR-FLIP
     float pixelsPerDegree = 67.0f; // of FLIP
 };
@@ -38,6 +41,7 @@ struct CompareResult
     std::optional<double> relMse;
     std::optional<double> psnr;   // dB, +infinity when equal
     std::optional<double> flip;   // mean of the map, [0,1]
+    std::optional<double> mean;   // over the reference's
     std::vector<float> errorMap;  // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
     uint64_t nonFinitePixels = 0; // of the compared picture; any makes the metrics NaN
 };

@@ -52,6 +52,13 @@ TEST(Mse, HandComputed)
     EXPECT_NEAR(relativeMeanSquaredError(a, b), (0.25 / 2.26 + 4.0 / 0.01) / 2.0, 1e-9);
 }
 
+TEST(MeanOverMean, IsTheRatioOfAllLight)
+{
+    const std::vector<float> dark = {1, 2, 3}, light = {2, 4, 2}, black = {0, 0, 0};
+    EXPECT_DOUBLE_EQ(meanOverMean(light, dark), 8.0 / 6.0);
+    EXPECT_TRUE(std::isnan(meanOverMean(light, black)));
+}
+
 TEST(Psnr, InfiniteForEqualAndKnownForBlackAgainstWhite)
 {
     EXPECT_EQ(peakSignalToNoise(pattern(), pattern(), 1.0f), std::numeric_limits<double>::infinity());
