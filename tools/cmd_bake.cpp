@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/opponents/baselines.h"
 #include "placement/probe_set.h"
 #include "runtime/bake/bake.h"
 #include "runtime/field/light_field_file.h"
@@ -47,6 +48,7 @@ int runBake(const BakeOptions& options, const Context& context)
     }
     // The field must say that it is a grid: its probes are then found by a formula, and the bake moves none of them.
     settings.grid = set->grid;
+    if (settings.grid && settings.chart == gpu::kChartOctahedral) settings.bounceShader = gridBouncePass(); // what reads such maps is an opponent
     const RenderSettings frame = *quality ? (*quality)->frame : RenderSettings(); // that the field is for
     // By the frames that the field is for: from which roughness on they trace no rays says what the field must keep.
     const Result<EffectPlan> plan = planEffects(checkScene(*scene, frame.raysBelow), options.effects);

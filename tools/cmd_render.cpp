@@ -209,7 +209,7 @@ int runRender(RenderOptions options, const Context& context)
     // An opponent's rays start further off their surface, or they meet it again; that is in metres, the setting a share of the diagonal.
     if (const std::optional<Baseline> baseline = baselineNamed(options.tracer))
     {
-        settings.glossyShader = traceGlossyPass(*baseline);
+        settings.lightShaders = lightPasses(*baseline);
         settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
     }
     Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(**gpu, *deviceScene, *field, settings);

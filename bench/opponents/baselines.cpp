@@ -11,6 +11,9 @@
 #include "bench/opponents/baseline_cpu.h"
 #include "bench/opponents/wang_field.h"
 #include "runtime/field/quality.h"
+#include "spirv/bake_bounce_2021.h"
+#include "spirv/gather_light_2017.h"
+#include "spirv/gather_light_2021.h"
 #include "spirv/trace_glossy_b0.h"
 #include "spirv/trace_glossy_b0plus.h"
 #include "spirv/trace_glossy_b0plus_octree.h"
@@ -28,15 +31,16 @@ namespace
 struct Entry // of the table, in the order of the numbers
 {
     std::string_view name;
-    Spirv rays, glossy;
+    Spirv rays;
+    LightShaders light;
 };
 
 const Entry& entryOf(Baseline baseline)
 {
-    static const Entry table[] = {{"b0", trace_rays_b0, trace_glossy_b0},
-                                  {"b0plus", trace_rays_b0plus, trace_glossy_b0plus},
-                                  {"b0plus-octree", trace_rays_b0plus_octree, trace_glossy_b0plus_octree},
-                                  {"wang", trace_rays_wang, trace_glossy_wang}};
+    static const Entry table[] = {{"b0", trace_rays_b0, {trace_glossy_b0, gather_light_2017}},
+                                  {"b0plus", trace_rays_b0plus, {trace_glossy_b0plus, gather_light_2021}},
+                                  {"b0plus-octree", trace_rays_b0plus_octree, {trace_glossy_b0plus_octree, {}}},
+                                  {"wang", trace_rays_wang, {trace_glossy_wang, {}}}};
     return table[uint32_t(baseline)];
 }
 
@@ -143,9 +147,14 @@ Spirv traceRaysPass(Baseline baseline)
     return entryOf(baseline).rays;
 }
 
-Spirv traceGlossyPass(Baseline baseline)
+LightShaders lightPasses(Baseline baseline)
 {
-    return entryOf(baseline).glossy;
+    return entryOf(baseline).light;
+}
+
+Spirv gridBouncePass()
+{
+    return bake_bounce_2021;
 }
 
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits)

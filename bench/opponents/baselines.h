@@ -6,6 +6,7 @@
 
 #include "base/result.h"
 #include "runtime/field/field_data.h"
+#include "runtime/frame/indirect_light.h"
 #include "runtime/vulkan/pipeline.h"
 #include "shaders/opponents/baseline.h"
 
@@ -40,9 +41,15 @@ uint32_t bestLowFactor(Baseline baseline);
 /// @param lowFactor  8, 16 or 32; 0: bestLowFactor
 Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t lowFactor = 0);
 
-/// Passes with the interfaces of trace_rays.comp and trace_glossy.comp, for makeRayTracer() and makeIndirectLight().
+/// A pass with the interface of trace_rays.comp, for makeRayTracer().
 Spirv traceRaysPass(Baseline baseline);
-Spirv traceGlossyPass(Baseline baseline);
+
+/// Passes for makeIndirectLight(). Grids are lit by the eight corners of a point's cell: b0 by the weights of McGuire et al. 2017, b0plus by those
+/// of Majercik et al. 2021; what has lists is lit by them, as ours is.
+LightShaders lightPasses(Baseline baseline);
+
+/// The bounces of a bake over a grid, for BakeSettings: by its eight corners, too, with b0plus's weights.
+Spirv gridBouncePass();
 
 /// The same text on the CPU, on all cores. The field is one of baselineField(). Misuse: spans of different length assert.
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits);

@@ -166,6 +166,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     bake.bounces = settings.bounces;
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
+    if (bake.grid && bake.chart == gpu::kChartOctahedral) bake.bounceShader = gridBouncePass();
     // What is measured of a field doesn't depend on the tracer that reads it: methods share fields.
     const std::string key = keyOf(Json{{"build", desc.build},
                                        {"format", kFieldFileVersion},
@@ -329,7 +330,7 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
     frame.seed = uint32_t(desc.settings.seed);
     if (const std::optional<Baseline> opponent = settings.opponent())
     {
-        frame.glossyShader = traceGlossyPass(*opponent);
+        frame.lightShaders = lightPasses(*opponent);
         // The frame's rays start where the race's do, for every tracer.
         frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
     }

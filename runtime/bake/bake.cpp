@@ -171,7 +171,7 @@ struct Bake
 
     Status directLight(ProbeBaker& baker);
     Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
-    Status bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number);
+    Status bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number, Spirv shader);
 };
 
 Status Bake::directLight(ProbeBaker& baker)
@@ -204,7 +204,7 @@ Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
     return success();
 }
 
-Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
+Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number, Spirv shader)
 {
     // The whole field's irradiance as it was before this bounce, so that the order of the probes doesn't matter.
     // Without radiance: a bounce reads irradiance and what weighs it, and the device has only that to hold.
@@ -222,7 +222,7 @@ Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number)
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
         if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
-        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i));
+        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i), shader);
         if (!status) return status;
     }
     return success();
@@ -312,7 +312,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         // Their number is a bound: a bounce costs a gather a texel, and one that adds next to nothing is the last.
         for (uint32_t b = 1; b <= settings.bounces; ++b)
         {
-            if (auto status = bake.bounce(**gpu, **baker, b); !status) return status.error();
+            if (auto status = bake.bounce(**gpu, **baker, b, settings.bounceShader); !status) return status.error();
             const double with = meanRadiance(bake.field);
             spent.energy.push_back(with - energy);
             bake.field.bounces = b;

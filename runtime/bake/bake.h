@@ -9,6 +9,7 @@
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/device_scene.h"
 #include "runtime/vulkan/host_vulkan.h"
+#include "runtime/vulkan/pipeline.h"
 #include "scene/probe_grid.h"
 #include "svo/build_octree.h"
 
@@ -28,6 +29,7 @@ struct BakeSettings
     bool prefiltered = true;                         // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid;                // set when the probes are a uniform one
+    Spirv bounceShader;                           // with bake_bounce.comp's interface; empty: our own
     uint64_t hostMemory = knobs::hostBytes.value; // bytes of main memory that it may take; 0: what is free
 
     /// Keeps what frames by a plan ask for, and the names of the plan's effects. @param tracedDiffuse  diffuse light by rays, too

@@ -336,12 +336,13 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
     return success();
 }
 
-Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target)
+Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
+                              Spirv bounceShader)
 {
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
-        auto made = Pipeline::compute(gpu, bake_bounce_comp, sets, sizeof(gpu::BakePush), shaderConstants(field));
+        auto made = Pipeline::compute(gpu, bounceShader.empty() ? Spirv(bake_bounce_comp) : bounceShader, sets, sizeof(gpu::BakePush), shaderConstants(field));
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }

@@ -83,7 +83,7 @@ Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline&
     }
     if (counts && !countImage)
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
-    const Spirv shader = glossyShader.empty() ? Spirv(trace_glossy_comp) : glossyShader;
+    const Spirv shader = shaders.glossy.empty() ? Spirv(trace_glossy_comp) : shaders.glossy;
     return makePass(
         pipeline, set, shader, {{gpu::kTraceLightBinding, &image}, {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts}},
         {{gpu::kTermId, term}, {gpu::kCountId, counts ? 1u : 0u}, {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()}});
@@ -105,15 +105,16 @@ Status IndirectLight::State::makeGather()
         if (auto s = makeImage(roughImage, kLightFormat, "rough reflections"); !s) return s;
     const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
-    return makePass(gatherPass, gatherSet, gather_light_comp, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
+    const Spirv shader = shaders.gather.empty() ? Spirv(gather_light_comp) : shaders.gather;
+    return makePass(gatherPass, gatherSet, shader, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
                     {{gpu::kGatherDiffuseId, gathersDiffuse() ? 1u : 0u},
                      {gpu::kGatherRoughId, effects.rough ? 1u : 0u},
                      {gpu::kListId, gatherList()},
                      {gpu::kByPatchesId, effects.patches ? 1u : 0u}});
 }
 
-IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, Spirv shader)
-    : gpu(device.shared_from_this()), field(asked), desc(wanted), glossyShader(shader)
+IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes)
+    : gpu(device.shared_from_this()), field(asked), desc(wanted), shaders(passes)
 {
 }
 
@@ -151,9 +152,9 @@ Status IndirectLight::State::make()
     return success();
 }
 
-Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, Spirv glossyShader)
+Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, const LightShaders& passes)
 {
-    auto state = std::make_unique<IndirectLight::State>(gpu, field, desc, glossyShader);
+    auto state = std::make_unique<IndirectLight::State>(gpu, field, desc, passes);
     if (Status status = state->make(); !status) return status.error();
     return IndirectLight(std::move(state));
 }

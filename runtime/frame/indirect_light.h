@@ -11,13 +11,21 @@
 namespace sconce
 {
 
+/// Passes in place of ours, SPIR-V with the interfaces of trace_glossy.comp and gather_light.comp; empty: our own. The bench brings its opponents
+/// through them.
+struct LightShaders
+{
+    Spirv glossy; // of the traced terms
+    Spirv gather; // of diffuse light and rough reflections that are read
+};
+
 /// What stands behind the handle IndirectLight.
 struct IndirectLight::State
 {
     std::shared_ptr<Gpu> gpu;
     LightField field;
     Desc desc;
-    Spirv glossyShader; // of the traced terms
+    LightShaders shaders;
     Buffer frame;
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
@@ -25,7 +33,7 @@ struct IndirectLight::State
     Pipeline glossyPass, mirrorPass, diffusePass, gatherPass, glossyFill, diffuseFill;
     Denoiser denoiser;
 
-    State(Gpu& device, const LightField& asked, const Desc& wanted, Spirv shader);
+    State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes);
     Status make();
     void setInputs(const FrameInputs& inputs);
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
@@ -51,7 +59,6 @@ private:
     }
 };
 
-/// @param glossyShader  SPIR-V with trace_glossy.comp's interface; empty: our tracer. The bench brings its opponents through it.
-Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, Spirv glossyShader = {});
+Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, const LightShaders& passes = {});
 
 } // namespace sconce

@@ -90,7 +90,7 @@ Status SceneRenderer::make()
     const bool rays = effects.glossy || effects.mirror;
     // First, since passes made below take its images and its list of tiles.
     auto light = makeIndirectLight(gpu, field, {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays},
-                                   settings.glossyShader);
+                                   settings.lightShaders);
     if (!light) return light.error();
     indirect.emplace(std::move(*light));
 

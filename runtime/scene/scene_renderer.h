@@ -22,7 +22,7 @@ struct RenderSettings
     std::optional<float> roughness;                  // [0,1]: every surface has this roughness (the benchmark of both papers)
     uint32_t areaSamples = knobs::areaSamples.value; // samples of the emitters, and as many of the sky, a pixel; noise falls with the root
     uint32_t seed = knobs::frameSeed.value;
-    Spirv glossyShader;                             // as makeIndirectLight() takes it
+    LightShaders lightShaders;                      // as makeIndirectLight() takes them
     float normalOffset = knobs::normalOffset.value; // share of the scene's diagonal that rays start off their surface
 };
 

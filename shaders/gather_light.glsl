@@ -1,0 +1,88 @@
+// Light that needs no ray, from the pixel's probes weighted by visibility: diffuse by their prefiltered irradiance, rough reflections by their
+// prefiltered radiance. Which probes, and their weights: candidatesAt() and nextCandidate(), which are included before.
+// Dispatch: see findPixel.
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = kListId) const uint kList = kListGathered;
+layout(constant_id = kGatherDiffuseId) const bool kDiffuse = true; // make the diffuse light
+layout(constant_id = kGatherRoughId) const bool kRough = true;   // make the rough reflections
+layout(constant_id = kByPatchesId) const bool kByPatches = false; // diffuse light from one probe's patches
+layout(set = 1, binding = kGatherDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
+layout(set = 1, binding = kGatherRoughBinding, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
+
+/// The probes with the largest weights, in order, and the largest weight of the others.
+struct Heaviest
+{
+    uvec4 probe;
+    vec4 weight;
+    float next;
+};
+const int kRoughProbes = 4; // that a rough reflection asks; at most 4
+
+void weigh(inout Heaviest h, uint probe, float weight)
+{
+    bvec4 after = greaterThan(vec4(weight), h.weight); // the places from which on all move
+    vec4 moved = vec4(weight, h.weight.xyz);
+    uvec4 movedProbe = uvec4(probe, h.probe.xyz);
+    h.next = max(h.next, min(weight, h.weight[kRoughProbes - 1]));
+    bvec4 here = bvec4(after.x, after.y && !after.x, after.z && !after.y, after.w && !after.z);
+    h.weight = mix(mix(h.weight, moved, after), vec4(weight), here);
+    h.probe = uvec4(here.x ? probe : after.x ? movedProbe.x : h.probe.x, here.y ? probe : after.y ? movedProbe.y : h.probe.y,
+                    here.z ? probe : after.z ? movedProbe.z : h.probe.z, here.w ? probe : after.w ? movedProbe.w : h.probe.w);
+}
+
+void main()
+{
+    ivec2 at;
+    if (!findPixel(kList, at)) return;
+    Pixel p = readPixel(at);
+    uint terms = termsOf(p);
+    bool wantDiffuse = kDiffuse && !isNotOf(kTermDiffuse, terms), wantRough = kRough && !isNotOf(kTermRough, terms);
+    if (!p.surface || !(wantDiffuse || wantRough)) return;
+    vec3 point = (p.position - field.origin) / field.scale;
+    TangentFrame tangents = tangentFrame(p.normal);
+    float alpha = ggxAlpha(p.brdf.roughness);
+    Lobe lobe = reflectedLobe(p.normal, p.view, alpha);
+
+    Candidates candidates = candidatesAt(at, p, point, tangents);
+    vec3 arriving = vec3(0.0);
+    float weights = 1e-30;
+    Heaviest heaviest = Heaviest(uvec4(0u), vec4(0.0), 0.0);
+    uint drawn = kNoProbe;
+    float lot = randomPair(uvec2(at), 0u, 5u, frame.seed).x;
+    uint probe;
+    float say;
+    while (nextCandidate(candidates, probe, say))
+    {
+        weights += say;
+        if (wantDiffuse && !kByPatches) arriving += say * probeIrradiance(probe, p.normal);
+        if (wantRough) weigh(heaviest, probe, say);
+        float share = say / weights;
+        if (lot < share) drawn = probe, lot /= share;
+        else lot = (lot - share) / (1.0 - share);
+    }
+    // One probe's patches, drawn by its say; the filter blends what neighbours drew.
+    if (wantDiffuse && kByPatches && drawn != kNoProbe)
+        arriving = weights * patchIrradiance(drawn, point - probeHeader(drawn).centre, p.normal);
+    if (wantDiffuse) imageStore(diffuse, at, vec4(arriving / weights, 1.0));
+    if (!wantRough) return;
+
+    float met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there
+    for (int i = 0; i < kRoughProbes; ++i)
+    {
+        if (heaviest.weight[i] <= 0.0) continue;
+        float seen = seenAlong(heaviest.probe[i], point - probeHeader(heaviest.probe[i]).centre, lobe.direction);
+        if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+    }
+    vec3 inLobe = vec3(0.0);
+    weights = 1e-30;
+    for (int i = 0; i < kRoughProbes; ++i)
+    {
+        if (heaviest.weight[i] <= 0.0) continue;
+        float weight = heaviest.weight[i] - 0.999 * heaviest.next; // so that one that leaves the list has no say before
+        vec3 fromProbe = point - probeHeader(heaviest.probe[i]).centre;
+        inLobe += weight * lobeRadiance(heaviest.probe[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(heaviest.probe[i], fromProbe, lobe.direction));
+        weights += weight;
+    }
+    // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
+    imageStore(rough, at, vec4(inLobe / weights * specularColor(lobesAt(p.brdf, dot(p.normal, p.view))), 1.0));
+}

@@ -1,0 +1,66 @@
+// Octahedral maps, which the grids of the bench read, are shaded as cube faces are: the same hidden test, the same distances of
+// reflections.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "scene/builtin_scenes.h"
+#include "tests/properties/frames/frame_test.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+class ChartsTest : public FrameTest
+{
+protected:
+    Result<RenderedFrame> drawOn(uint32_t chart, uint32_t resolution, const Scene& scene, std::span<const vec3> probes)
+    {
+        BakeSettings bake;
+        bake.resolution = resolution;
+        bake.chart = chart;
+        bake.bounces = 1;
+        BakeReport report;
+        const auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        if (!field) return field.error();
+        RenderSettings settings = settingsOf(96);
+        settings.raysBelow = 0.0f; // no rays, whose tracers differ
+        settings.effects.denoise = false;
+        return drawWith(*field, scene, settings);
+    }
+};
+
+/// Mean difference over mean light.
+double difference(std::span<const vec3> a, std::span<const vec3> b)
+{
+    double apart = 0.0, all = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+        for (int c = 0; c < 3; ++c) apart += std::abs(a[i][c] - b[i][c]), all += a[i][c];
+    return apart / all;
+}
+
+TEST_F(ChartsTest, TheSameProbesGiveTheSamePictureOnBothCharts)
+{
+    // 6 * 128^2 texels a probe and 320^2, 4 % more.
+    for (const char* name : {"cornell", "cornell-glossy"})
+    {
+        const Scene scene = *makeBuiltinScene(name);
+        const std::vector<vec3> probes = {
+            {0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f}, {0.6f, 1.2f, 0.2f}, {-0.75f, 1.0f, -0.8f}};
+        const auto cube = drawOn(gpu::kChartCube, 256, scene, probes), octahedron = drawOn(gpu::kChartOctahedral, 320, scene, probes);
+        ASSERT_TRUE(cube && octahedron);
+        const double diffuse = difference(cube->diffuseIndirect, octahedron->diffuseIndirect);
+        RecordProperty(std::string(name) + " diffuse", std::to_string(diffuse));
+        EXPECT_LT(diffuse, 0.02) << name;
+        if (scene.materials.empty() || std::string(name) == "cornell") continue;
+        const double rough = difference(cube->glossyIndirect, octahedron->glossyIndirect);
+        RecordProperty(std::string(name) + " rough", std::to_string(rough));
+        EXPECT_LT(rough, 0.05) << name;
+    }
+}
+
+} // namespace
+} // namespace sconce

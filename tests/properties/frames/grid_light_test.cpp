@@ -1,0 +1,118 @@
+// Grids are lit by their eight corners, with the weights of the papers: each pixel of a frame against those formulas in double.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/opponents/baselines.h"
+#include "runtime/field/tracer_cpu.h"
+#include "scene/mesh_builder.h"
+#include "shaders/shared/brdf.h"
+#include "tests/properties/frames/frame_test.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+using glm::dvec3;
+
+constexpr double kMean = 0.6, kSpread = 0.04; // of the distances that every probe is told to see, metres and their square
+const ProbeGrid kGrid{glm::ivec3(2), vec3(-0.6f), vec3(1.2f)};
+
+double colourOf(int corner)
+{
+    return 1.0 + corner;
+}
+
+/// McGuire et al. 2017, supplement.
+double weight2017(dvec3 x, dvec3 n, dvec3, dvec3 centre, double trilinear)
+{
+    const double d = glm::distance(x, centre);
+    double w = trilinear * std::max(0.05, glm::dot((centre - x) / d, n));
+    if (d > kMean) w *= kSpread / (kSpread + (d - kMean) * (d - kMean));
+    return std::max(w, 0.0002);
+}
+
+/// Majercik et al. 2019, section 4, with the bias and the crushed tail of 2021.
+double weight2021(dvec3 x, dvec3 n, dvec3 view, dvec3 centre, double trilinear)
+{
+    const dvec3 biased = x + 0.1 * (n + view);
+    const double d = glm::distance(biased, centre), wrap = 0.5 * (glm::dot(glm::normalize(centre - x), n) + 1.0);
+    double w = wrap * wrap + 0.2;
+    if (d > kMean) w *= std::max(std::pow(kSpread / (kSpread + (d - kMean) * (d - kMean)), 3.0), 0.05);
+    if (w < 0.2) w *= w * w / 0.04;
+    return w * trilinear;
+}
+
+class GridLightTest : public FrameTest
+{
+};
+
+TEST_F(GridLightTest, EachPixelIsThePapersBlendOfEightCorners)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
+    scene.cameras.push_back(
+        {"inside", {0.7f, 0.5f, 0.8f}, glm::normalize(vec3(-1, -0.8f, -1)), glm::normalize(vec3(-0.8f, 2.0f, -0.8f)), 1.2f});
+    Camera& camera = scene.cameras.front();
+    camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, vec3(0, 1, 0)), camera.forward));
+    std::vector<vec3> probes;
+    for (int i = 0; i < 8; ++i) probes.push_back(kGrid.origin + kGrid.step * vec3(i & 1, (i >> 1) & 1, i >> 2));
+    BakeSettings bake;
+    bake.resolution = 64;
+    bake.chart = gpu::kChartOctahedral;
+    bake.bounces = 0;
+    bake.grid = kGrid;
+    BakeReport report;
+    auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+    ASSERT_TRUE(field) << field.error().message;
+    twin::LightFieldTwin<float> text(*field, {});
+    const double unit = field->info.scale;
+    for (size_t i = 0; i < field->irradiance.size(); i += 2)
+    {
+        field->irradiance[i] = text.packRadiance(vec3(float(colourOf(int(i / (2 * gpu::kIrradianceSize * gpu::kIrradianceSize))))));
+        field->irradiance[i + 1] = text.realToHalf(float(kMean / unit)) | (text.realToHalf(float(kSpread / (unit * unit))) << 16);
+    }
+
+    RenderSettings settings = settingsOf(64);
+    settings.effects = {.diffuse = true, .rough = false, .glossy = false, .mirror = false, .denoise = false};
+    const dvec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
+    for (const Baseline baseline : {Baseline::b0, Baseline::b0Plus})
+    {
+        settings.lightShaders = lightPasses(baseline);
+        const auto frame = drawWith(*field, scene, settings);
+        ASSERT_TRUE(frame) << frame.error().message;
+        const double tangent = std::tan(0.5 * camera.verticalFov);
+        for (uint32_t y = 0; y < 64; y += 3)
+            for (uint32_t x = 0; x < 64; x += 3)
+            {
+                const size_t pixel = size_t(y) * 64 + x;
+                const dvec3 ray = dvec3(camera.forward) +
+                                  tangent * ((2.0 * (x + 0.5) / 64 - 1.0) * right - (2.0 * (y + 0.5) / 64 - 1.0) * dvec3(camera.up));
+                const dvec3 point = dvec3(camera.eye) + double(frame->depth[pixel]) * ray, n = frame->normal[pixel],
+                            view = -glm::normalize(ray);
+                double sum = 0.0, weights = 0.0;
+                for (int i = 0; i < 8; ++i)
+                {
+                    double trilinear = 1.0;
+                    for (int axis = 0; axis < 3; ++axis)
+                    {
+                        const double alpha = std::clamp((point[axis] + 0.6) / 1.2, 0.0, 1.0), part = (i >> axis) & 1 ? alpha : 1.0 - alpha;
+                        trilinear *= baseline == Baseline::b0 ? part : std::max(part, 0.001);
+                    }
+                    const double w =
+                        (baseline == Baseline::b0 ? weight2017 : weight2021)(point, n, view, dvec3(probes[size_t(i)]), trilinear);
+                    sum += w * colourOf(i), weights += w;
+                }
+                const BrdfLobes lobes = lobesAt({vec3(0.5f), 0.0f, 1.0f}, float(glm::dot(n, view)));
+                const double expected = lobes.diffuse.g * sum / weights;
+                EXPECT_NEAR(frame->diffuseIndirect[pixel].g, expected, 0.02 * expected)
+                    << baselineName(baseline) << " at " << x << ", " << y;
+            }
+    }
+}
+
+} // namespace
+} // namespace sconce
