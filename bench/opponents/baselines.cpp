@@ -121,7 +121,7 @@ std::optional<Baseline> baselineNamed(std::string_view name)
 
 float baselineOffset(Baseline baseline)
 {
-    return baseline == Baseline::b0 ? 0.0f : 0.01f;
+    return baseline == Baseline::b0 ? 0.0f : kFartherStart;
 }
 
 uint32_t bestLowFactor(Baseline baseline)

@@ -27,8 +27,9 @@ inline constexpr Baseline kBaselines[] = {Baseline::b0, Baseline::b0Plus, Baseli
 std::string_view baselineName(Baseline baseline);
 std::optional<Baseline> baselineNamed(std::string_view name);
 
-/// Metres along the normal that an opponent's rays start further off their surface. One centimetre, without which more than half of all
+/// Metres along the normal that an opponent's rays start further off their surface: kFartherStart, without which more than half of all
 /// hand-offs are the start surface met again; 0 for b0, whose defect that is.
+inline constexpr float kFartherStart = 0.01f;
 float baselineOffset(Baseline baseline);
 
 /// Texels a side that a texel of the low-resolution map covers: the published 16 for b0, for the others what is fastest on maps of 256 to

@@ -16,7 +16,7 @@ namespace
 
 static_assert(std::endian::native == std::endian::little, "the file is little endian and written as it lies in memory");
 
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr float kMissed = -1.0f;
 
 struct Header
@@ -32,9 +32,21 @@ static_assert(sizeof(Header) == 32);
 struct Record
 {
     vec3 origin, direction, normal;
-    float truth; // metres
+    float truth, fartherTruth; // metres
 };
-static_assert(sizeof(Record) == 40);
+static_assert(sizeof(Record) == 44);
+
+float recorded(const RayTruth& truth)
+{
+    return truth.hit ? truth.t : kMissed;
+}
+RayTruth truthFrom(float distance)
+{
+    RayTruth truth;
+    truth.hit = distance >= 0.0f;
+    truth.t = truth.hit ? distance : 0.0f;
+    return truth;
+}
 
 Error damaged(const std::filesystem::path& file, const char* what)
 {
@@ -50,7 +62,7 @@ Status saveRays(const RaySet& set, const std::filesystem::path& file)
     header.diagonal = set.diagonal;
     std::vector<Record> records(set.size());
     for (size_t i = 0; i < set.size(); ++i)
-        records[i] = {set.origins[i], set.directions[i], set.normals[i], set.truth[i].hit ? set.truth[i].t : kMissed};
+        records[i] = {set.origins[i], set.directions[i], set.normals[i], recorded(set.truth[i]), recorded(set.fartherTruth[i])};
     auto target = SafeFile::create(file);
     if (!target) return target.error();
     if (auto status = target->append(std::as_bytes(std::span(&header, 1))); !status) return status;
@@ -87,10 +99,8 @@ Result<RaySet> loadRays(const std::filesystem::path& file)
         set.origins.push_back(record.origin);
         set.directions.push_back(record.direction);
         set.normals.push_back(record.normal);
-        RayTruth truth;
-        truth.hit = record.truth >= 0.0f;
-        truth.t = truth.hit ? record.truth : 0.0f;
-        set.truth.push_back(truth);
+        set.truth.push_back(truthFrom(record.truth));
+        set.fartherTruth.push_back(truthFrom(record.fartherTruth));
     }
     set.startCosine.assign(set.size(), 1.0f);
     return set;

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/random.h"
+#include "bench/opponents/baselines.h"
 #include "shaders/shared/brdf.h"
 
 namespace sconce
@@ -72,6 +73,7 @@ RaySet emptySet(const RayScene& rays, size_t count)
     set.normals.resize(count, vec3(0.0f));
     set.startCosine.resize(count, 1.0f);
     set.truth.resize(count);
+    set.fartherTruth.resize(count);
     const Bounds bounds = rays.scene().bounds();
     set.diagonal = bounds.empty() ? 0.0f : bounds.diagonal();
     return set;
@@ -95,6 +97,7 @@ void sortByPlace(RaySet& set, const std::vector<uint64_t>& places)
     set.normals = inOrder(set.normals, order);
     set.startCosine = inOrder(set.startCosine, order);
     set.truth = inOrder(set.truth, order);
+    set.fartherTruth = inOrder(set.fartherTruth, order);
 }
 
 } // namespace
@@ -139,6 +142,7 @@ Result<RaySet> glossyRays(const RayScene& rays, std::span<const Camera> cameras,
                               set.normals[i] = geometric;
                               set.startCosine[i] = cosine;
                               set.truth[i] = truthOf(rays, set.origins[i], direction);
+                              set.fartherTruth[i] = truthOf(rays, set.origins[i] + kFartherStart * geometric, direction);
                               return;
                           }
                           blind.store(true);
@@ -160,7 +164,7 @@ RaySet raySetFrom(const RayScene& rays, std::span<const vec3> origins, std::span
                       {
                           set.origins[i] = origins[i];
                           set.directions[i] = directions[i];
-                          set.truth[i] = truthOf(rays, origins[i], directions[i]);
+                          set.truth[i] = set.fartherTruth[i] = truthOf(rays, origins[i], directions[i]); // no normal to start off along
                       });
     return set;
 }

@@ -32,19 +32,24 @@ TraceVerdict judge(const RayTruth& truth, const TracedRay& traced, float diagona
     return beyond < 0.0f ? TraceVerdict::falseHit : TraceVerdict::leak;
 }
 
-TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced)
+TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced, bool farther)
 {
-    assert(set.size() == traced.size());
+    const std::vector<RayTruth>& truth = farther ? set.fartherTruth : set.truth;
+    assert(truth.size() == traced.size());
     TraceScore score;
     score.rays = set.size();
     if (traced.empty()) return score;
-    size_t verdicts[4]{}, exact = 0;
+    size_t verdicts[4]{}, exact = 0, assumed1 = 0, assumed02 = 0;
+    const auto isExact = [&](size_t i) { return !truth[i].hit || std::abs(traced[i].t - truth[i].t) <= 0.002f * set.diagonal; };
     std::vector<uint32_t> handoffs, distanceReads, indexReads;
     for (size_t i = 0; i < traced.size(); ++i)
     {
-        const TraceVerdict verdict = judge(set.truth[i], traced[i], set.diagonal);
+        const TraceVerdict verdict = judge(truth[i], traced[i], set.diagonal);
         ++verdicts[static_cast<size_t>(verdict)];
-        if (verdict == TraceVerdict::right) exact += !set.truth[i].hit || std::abs(traced[i].t - set.truth[i].t) <= 0.002f * set.diagonal;
+        if (verdict == TraceVerdict::right) exact += isExact(i);
+        TracedRay taken = traced[i];
+        if (taken.status == TraceStatus::unknown) taken.status = TraceStatus::hit;
+        if (judge(truth[i], taken, set.diagonal) == TraceVerdict::right) ++assumed1, assumed02 += isExact(i);
         handoffs.push_back(traced[i].handoffs);
         distanceReads.push_back(traced[i].distanceReads);
         indexReads.push_back(traced[i].indexReads);
@@ -55,6 +60,8 @@ TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced)
     score.falseHit = share(verdicts[1]);
     score.leak = share(verdicts[2]);
     score.unresolved = share(verdicts[3]);
+    score.assumed1 = share(assumed1);
+    score.assumed02 = share(assumed02);
     score.handoffs = spreadOf(std::move(handoffs));
     score.distanceReads = spreadOf(std::move(distanceReads));
     score.indexReads = spreadOf(std::move(indexReads));

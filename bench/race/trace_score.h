@@ -24,12 +24,13 @@ struct RayTruth
 /// Rays with what they really hit.
 struct RaySet
 {
-    std::vector<vec3> origins;      // [n] metres, 1e-4 of the diagonal off the surface
-    std::vector<vec3> directions;   // [n] unit
-    std::vector<vec3> normals;      // [n] geometric normal of the surface they leave, on the ray's side; 0 when it is not known
-    std::vector<float> startCosine; // [n] with the surface they leave; below 0.05 (3 degrees) is a grazing start
-    std::vector<RayTruth> truth;    // [n]
-    float diagonal = 0.0f;          // of the scene, metres
+    std::vector<vec3> origins;          // [n] metres, 1e-4 of the diagonal off the surface
+    std::vector<vec3> directions;       // [n] unit
+    std::vector<vec3> normals;          // [n] geometric normal of the surface they leave, on the ray's side; 0 when it is not known
+    std::vector<float> startCosine;     // [n] with the surface they leave; below 0.05 (3 degrees) is a grazing start
+    std::vector<RayTruth> truth;        // [n]
+    std::vector<RayTruth> fartherTruth; // [n] of the rays that start kFartherStart further off; [0]: nobody asked
+    float diagonal = 0.0f;              // of the scene, metres
 
     size_t size() const { return origins.size(); }
 };
@@ -45,7 +46,7 @@ enum class TraceStatus : uint32_t
 struct TracedRay
 {
     TraceStatus status = TraceStatus::unknown;
-    float t = 0.0f; // metres, of a hit
+    float t = 0.0f; // metres, of a hit, or where sight was lost
     uint32_t handoffs = 0;
     uint32_t distanceReads = 0;
     uint32_t indexReads = 0;
@@ -76,12 +77,15 @@ struct TraceScore // shares of all rays, [0,1]
     double falseHit = 0.0;
     double leak = 0.0;
     double unresolved = 0.0;
+    double assumed1 = 0.0; // right within 1 % if what is unresolved were a hit where the tracer lost sight (McGuire et al. 2017, section 4)
+    double assumed02 = 0.0;
     Spread handoffs;
     Spread distanceReads;
     Spread indexReads;
 };
 
 /// Scores a tracer. Misuse: spans of different length assert. Share and spreads of an empty set are 0.
-TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced);
+/// @param farther  its rays started kFartherStart further off: they are judged by fartherTruth
+TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced, bool farther = false);
 
 } // namespace sconce

@@ -193,6 +193,11 @@ double TracedMethod::radianceMebibytes() const
     return double(field.radiance.size()) * sizeof(uint32_t) / double(field.info.probeCount) / kMebibyte;
 }
 
+bool TracedMethod::startsFarther() const
+{
+    return how.opponent && baselineOffset(*how.opponent) > 0.0f;
+}
+
 std::vector<gpu::Ray> TracedMethod::raysOf(const RaySet& set) const
 {
     // Opponents' rays start farther off their surface; ours need no more than the set's own distance.
@@ -206,7 +211,7 @@ Result<TraceScore> TracedMethod::score(const RaySet& set)
 {
     std::vector<gpu::RayHit> hits(set.size());
     if (auto status = trace(raysOf(set), hits); !status) return status.error();
-    return scoreTraces(set, tracedRays(hits));
+    return scoreTraces(set, tracedRays(hits), startsFarther());
 }
 
 void TracedMethod::traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) const

@@ -57,6 +57,7 @@ public:
     FieldBytes bytes() const;         // of the whole field, as the tracer would keep it
 
     std::vector<gpu::Ray> raysOf(const RaySet& set) const; // off their surface as the tracer wants them
+    bool startsFarther() const;                            // by kFartherStart: they are judged by RaySet::fartherTruth
     Status trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) { return tracer->trace(rays, hits); }
     Result<TraceScore> score(const RaySet& set); // traces the set and judges every answer
     void traceOnCpu(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits) const;

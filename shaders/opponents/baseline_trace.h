@@ -1,6 +1,6 @@
 // The opponents' loop over probes: from a ray to its result. kBaseline (baseline.h) says whose.
 //   B0       the supplement's: the eight corners of the grid cell of the origin, +3 mod 8, indices that wrap at the far borders
-//   B0+      the paper's re-pick of the cell as the ray proceeds, borders clamped
+//   B0+      the paper's first probe, nearest to the ray's line, and its re-pick of the cell as the ray proceeds; borders clamped
 //   others   the ranked list of the octree's leaf at the point reached, and when that is used up those a little further on; probes tried
 //            without progress are left out. Wang et al. keep their index in a sparse voxel octree of at most four probes a voxel; ours
 //            (svo/octree.h), which does the same in fewer bytes, stands in for it. A probe lost by a back face asks again at that point.
@@ -67,7 +67,26 @@ SCONCE_FN uint b0ProbeIndex(ivec3 cell, int corner)
     return x + field.gridX * (y + field.gridY * z);
 }
 
-SCONCE_FN BaselineChoice beginChoice(vec3 origin)
+/// Corner of the cell whose probe is nearest to the ray's line, from `origin` on (McGuire et al. 2017, section 4.2).
+SCONCE_FN int b0NearestToLine(vec3 origin, vec3 direction, ivec3 cell)
+{
+    int nearest = 0;
+    real least = real(3e38);
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        vec3 away = vec3(probeHeader(b0ProbeIndex(cell, corner)).centre) - origin;
+        real along = max(dot(away, direction), real(0.0));
+        real apart = dot(away, away) - along * along;
+        if (apart < least)
+        {
+            least = apart;
+            nearest = corner;
+        }
+    }
+    return nearest;
+}
+
+SCONCE_FN BaselineChoice beginChoice(vec3 origin, vec3 direction)
 {
     BaselineChoice c;
     c.probe = kNoProbe;
@@ -80,14 +99,15 @@ SCONCE_FN BaselineChoice beginChoice(vec3 origin)
     if (!kFromOctree)
     {
         c.cell = b0Cell(origin);
-        c.corner = b0NearestCorner(origin, c.cell);
+        if (kPublished) c.corner = b0NearestCorner(origin, c.cell);
+        else c.corner = b0NearestToLine(origin, direction, c.cell);
         c.probe = b0ProbeIndex(c.cell, c.corner);
     }
     return c;
 }
 
 /// The grid's next probe once the last one lost the ray at `at`. False: all eight of the cell were asked.
-SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at)
+SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at, vec3 direction)
 {
     ++c.tries;
     bool moved = false;
@@ -98,7 +118,7 @@ SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at)
         if (moved)
         {
             c.cell = now;
-            c.corner = b0NearestCorner(at, now);
+            c.corner = b0NearestToLine(at, direction, now);
             c.tries = 0;
         }
     }
@@ -155,7 +175,7 @@ SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
     ray.nearest = real(0.0);
     ray.before = origin;
     real tMax = kPublished ? real(10000.0) / real(field.scale) : fieldExit(origin, direction);
-    BaselineChoice choice = beginChoice(origin);
+    BaselineChoice choice = beginChoice(origin, direction);
     uint seenBy = kNoProbe; // probe of the last texel that stopped the march
     bool asked = kFromOctree ? nextOfLists(choice, origin, direction, ray.tMin) : true;
     for (int i = 0; i < (kFromOctree ? kListLimit : kBaselineLimit) && asked; ++i)
@@ -169,7 +189,7 @@ SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
         if (!ray.certain) seenBy = ray.probe;
         if (result.status == kHit) break;
         if (kFromOctree) asked = nextOfLists(choice, origin, direction, ray.tMin);
-        else asked = nextOfGrid(choice, origin + ray.tMin * direction);
+        else asked = nextOfGrid(choice, origin + ray.tMin * direction, direction);
     }
     result.t = ahead + (result.status == kHit ? ray.t : (result.status == kMiss ? tMax : ray.tMin));
     if (result.status != kMiss && seenBy != kNoProbe) // unknown: the last occluder seen, which the paper takes as hit
