@@ -11,7 +11,8 @@
 #define SCONCE_FIELD_SET 0
 #endif
 
-// The maps are read through addresses: one probe set may exceed what a storage buffer descriptor can span (128 MiB on software Vulkan).
+// The maps are read through texel buffers where they fit, else through addresses: one probe set may exceed what a buffer descriptor can span
+// (128 Mi texels, 128 MiB of a storage buffer on software Vulkan).
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SconceWords { uint word[]; };
 layout(scalar, set = SCONCE_FIELD_SET, binding = kFieldBlockBinding) uniform SconceField { SCONCE_FIELD_BLOCK };
 // Texels of four words, which software Vulkan loads in less time than as many words of a storage buffer: FieldData::probes, 3 texels each, and
@@ -19,10 +20,15 @@ layout(scalar, set = SCONCE_FIELD_SET, binding = kFieldBlockBinding) uniform Sco
 layout(set = SCONCE_FIELD_SET, binding = kFieldProbesBinding) uniform textureBuffer sconceProbes;
 layout(set = SCONCE_FIELD_SET, binding = kFieldPatchesBinding) uniform utextureBuffer sconcePatches;
 layout(set = SCONCE_FIELD_SET, binding = kFieldOctreeBinding) uniform utexture3D sconceOctree;
+layout(set = SCONCE_FIELD_SET, binding = kFieldDistanceBinding) uniform utextureBuffer sconceDistance;
+layout(set = SCONCE_FIELD_SET, binding = kFieldRadianceBinding) uniform utextureBuffer sconceRadiance;
+layout(set = SCONCE_FIELD_SET, binding = kFieldIrradianceBinding) uniform utextureBuffer sconceIrradiance;
+layout(set = SCONCE_FIELD_SET, binding = kFieldPrefilteredBinding) uniform utextureBuffer sconcePrefiltered;
 
 // Of a pass; LightField::constants() holds them.
 layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
 bool readsFarBounds() { return (kFieldFlags & kReadsFarBounds) != 0u; }
+bool byTexels() { return (kFieldFlags & kByTexels) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
@@ -33,11 +39,27 @@ ProbeHeader probeHeader(uint probe)
     vec4 a = texelFetch(sconceProbes, 3 * int(probe)), b = texelFetch(sconceProbes, 3 * int(probe) + 1), c = texelFetch(sconceProbes, 3 * int(probe) + 2);
     return ProbeHeader(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
 }
-uint distanceWord(uint index) { return SconceWords(distanceAddress).word[index]; }
-uint radianceWord(uint index) { return SconceWords(radianceAddress).word[index]; }
-uint irradianceWord(uint index) { return SconceWords(irradianceAddress).word[index]; }
+uint distanceWord(uint index)
+{
+    if (byTexels()) return texelFetch(sconceDistance, int(index)).x;
+    return SconceWords(distanceAddress).word[index];
+}
+uint radianceWord(uint index)
+{
+    if (byTexels()) return texelFetch(sconceRadiance, int(index)).x;
+    return SconceWords(radianceAddress).word[index];
+}
+uint irradianceWord(uint index)
+{
+    if (byTexels()) return texelFetch(sconceIrradiance, int(index)).x;
+    return SconceWords(irradianceAddress).word[index];
+}
 uvec4 patchWords(uint pair) { return texelFetch(sconcePatches, int(pair)); }
-uint prefilteredWord(uint index) { return SconceWords(prefilteredAddress).word[index]; }
+uint prefilteredWord(uint index)
+{
+    if (byTexels()) return texelFetch(sconcePrefiltered, int(index)).x;
+    return SconceWords(prefilteredAddress).word[index];
+}
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 
 #include "shared/pure_text.h"

@@ -73,7 +73,7 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
 
 } // namespace
 
-Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality)
+Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality, WordAccess access)
 {
     if (field.probes.empty()) return Error{ErrorCode::badArgument, "the light field has no probes; bake one with at least one probe"};
     const auto state = std::make_shared<LightField::State>();
@@ -86,13 +86,19 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
         Buffer& buffer;
         std::span<const uint32_t> words;
         const char* what;
+        uint32_t binding;
     };
-    for (const Part& part :
-         {Part{made.distance, field.distance, "probe distances"}, Part{made.radiance, field.radiance, "probe radiance"},
-          Part{made.irradiance, field.irradiance, "probe irradiance"}, Part{made.prefiltered, field.prefiltered, "prefiltered radiance"}})
+    const Part parts[] = {{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding},
+                          {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding},
+                          {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
+                          {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding}};
+    made.byTexels = access == WordAccess::texelBuffers &&
+                    std::ranges::all_of(parts, [&](const Part& part) { return part.words.size() <= gpu.properties.limits.maxTexelBufferElements; });
+    for (const Part& part : parts)
     {
         if (part.words.empty()) continue;
-        auto buffer = gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
+        auto buffer = made.byTexels ? gpu.makeTexelBuffer<uint32_t>(part.words, VK_FORMAT_R32_UINT, part.what)
+                                    : gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
         if (!buffer) return buffer.error();
         part.buffer = std::move(*buffer);
         made.bytes += part.buffer.size();
@@ -121,13 +127,19 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     const DescriptorSet::Binding bindings[] = {{gpu::kFieldBlockBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                                                {gpu::kFieldProbesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldOctreeBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                               {gpu::kFieldPatchesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+                                               {gpu::kFieldPatchesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldDistanceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldRadianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldIrradianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldPrefilteredBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
     made.set.write(gpu::kFieldBlockBinding, made.block);
     made.set.write(gpu::kFieldProbesBinding, made.probes);
     made.set.write(gpu::kFieldPatchesBinding, made.patches);
+    // What isn't there, or is read by address, is bound to something that is there.
+    for (const Part& part : parts) made.set.write(part.binding, made.byTexels && part.buffer ? part.buffer : made.patches);
     made.set.write(gpu::kFieldOctreeBinding, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     // Last: the block that it fills holds the addresses of the buffers above.
     if (auto status = made.setQuality(quality); !status) return status.error();
@@ -158,7 +170,8 @@ std::array<uint32_t, 2> LightField::constants() const
 {
     std::array<uint32_t, 2> values{};
     values[gpu::kFieldFlagsId] =
-        (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u);
+        (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
+        (shared->byTexels ? gpu::kByTexels : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

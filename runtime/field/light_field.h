@@ -15,7 +15,7 @@ struct LightField::State
     std::shared_ptr<Gpu> gpu;
     gpu::LightFieldInfo info{};
     Buffer block, probes, distance, radiance, irradiance, prefiltered, patches;
-    bool readsFarBounds = false, radianceHeld = false, patchesHeld = false;
+    bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
     GpuImage octree;
     DescriptorSet set;
     std::vector<std::string> effects;
@@ -24,8 +24,16 @@ struct LightField::State
     Status setQuality(const Quality& quality);
 };
 
+/// How passes read a field's words: the same words either way.
+enum class WordAccess
+{
+    texelBuffers, // where every map fits one, else by address: software Vulkan (Mesa 22.3) gathers texels with one instruction for all lanes
+    addresses
+};
+
 /// Uploads a baked field. Errors: badArgument (no probes, knobs out of range: named), outOfMemory (names the bytes), deviceFailure.
-Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality = {});
+Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality = {},
+                                  WordAccess access = WordAccess::texelBuffers);
 
 /// LightField::constants() as pipelines take them.
 std::array<ShaderConstant, 2> shaderConstants(const LightField& field);

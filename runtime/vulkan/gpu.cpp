@@ -124,7 +124,7 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
 
 Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
 {
-    const VkDeviceSize texels = buffer.size() / 16;
+    const VkDeviceSize texels = buffer.size() / (format == VK_FORMAT_R32_UINT ? 4 : 16);
     if (texels > properties.limits.maxTexelBufferElements)
         return Error{ErrorCode::missingFeature, fmt::format("{} need a buffer of {} texels; the device allows {}; bake fewer probes",
                                                             buffer.what(), texels, properties.limits.maxTexelBufferElements)};

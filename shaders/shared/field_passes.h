@@ -8,10 +8,15 @@ const uint kFieldBlockBinding = 0u;
 const uint kFieldProbesBinding = 1u;
 const uint kFieldOctreeBinding = 2u;
 const uint kFieldPatchesBinding = 3u;
+const uint kFieldDistanceBinding = 4u; // these four: words of FieldData, where kByTexels
+const uint kFieldRadianceBinding = 5u;
+const uint kFieldIrradianceBinding = 6u;
+const uint kFieldPrefilteredBinding = 7u;
 const uint kFieldFlagsId = 0u;
 const uint kHoldsRadianceId = 1u;
 const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
 const uint kOnOctahedron = 2u;
+const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 
 // The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.
 #define SCONCE_FIELD_BLOCK \

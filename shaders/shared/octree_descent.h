@@ -1,10 +1,29 @@
 // Which probes a point asks. Shared text: GLSL, or C++ inside a struct that names `real`, holds `field` (LightFieldInfo) and defines
 // uvec4 octreeTexel(ivec3). Layout of the texture: svo/octree.h. After Wang et al. 2019, section 4.1 (leaf-only octree in a 3D texture).
 
+/// (quotient, remainder). By a float's quotient, set right by one where it was rounded over: lanes of a vector divide integers one by one.
+SCONCE_FN ivec2 quotient(int number, int divisor)
+{
+    int q = int((real(number) + real(0.5)) / real(divisor));
+    int rest = number - q * divisor;
+    if (rest < 0)
+    {
+        --q;
+        rest += divisor;
+    }
+    if (rest >= divisor)
+    {
+        ++q;
+        rest -= divisor;
+    }
+    return ivec2(q, rest);
+}
+
 SCONCE_FN ivec3 octreeBrickTexel(uint brick)
 {
-    uint row = brick / field.bricks.x;
-    return ivec3(int(2u * (brick % field.bricks.x)), int(2u * (row % field.bricks.y)), int(2u * (row / field.bricks.y)));
+    ivec2 row = quotient(int(brick), int(field.bricks.x));
+    ivec2 layer = quotient(row.x, int(field.bricks.y));
+    return ivec3(2 * row.y, 2 * layer.y, 2 * layer.x);
 }
 
 /// Finest voxel of a point in field space; a point outside the bounds, or not a number, gets the nearest one.

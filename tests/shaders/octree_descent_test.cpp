@@ -56,6 +56,18 @@ FieldData byHand(uint32_t marker)
     return field;
 }
 
+TEST(OctreeDescent, QuotientsByFloatsAreTheIntegers)
+{
+    twin::LightFieldTwin<float> text(byHand(255), {});
+    std::mt19937 random(3);
+    for (int i = 0; i < 200000; ++i)
+    {
+        const int divisor = 1 + int(random() % 2048), number = i % 2 ? int(random() % (1u << 24)) : divisor * int(random() % 8192) - i % 3;
+        if (number < 0) continue;
+        EXPECT_EQ(text.quotient(number, divisor), glm::ivec2(number / divisor, number % divisor)) << number << ' ' << divisor;
+    }
+}
+
 TEST(OctreeDescent, FindsTheLeafThatHoldsAPoint)
 {
     for (const uint32_t marker : {255u, 65535u})

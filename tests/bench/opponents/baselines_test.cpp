@@ -212,7 +212,7 @@ TraceScore cornellScore(Baseline baseline)
     std::vector<TracedRay> traced;
     for (const gpu::RayHit& hit : hits)
         traced.push_back({TraceStatus(hit.status), hit.t, uint32_t(hit.handoffs), uint32_t(hit.distanceReads), uint32_t(hit.indexReads)});
-    return scoreTraces(set, traced);
+    return scoreTraces(set, traced, baselineOffset(baseline) > 0.0f);
 }
 
 // The chain is a faster way to the same texels: with the same probes and lists, W' answers as B0+ does.

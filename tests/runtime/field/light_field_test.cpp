@@ -1,10 +1,12 @@
 // The GPU runs the same text as the CPU: the answers must agree ray by ray.
 #include <cmath>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
 #include "runtime/field/light_field.h"
 #include "runtime/field/tracer_cpu.h"
+#include "shaders/shared/field_passes.h"
 #include "shaders/shared/pure.h"
 #include "tests/support/cornell_field.h"
 #include "tests/support/device.h"
@@ -73,6 +75,26 @@ TEST_F(GpuTrace, OddRaysEndFinite)
     ASSERT_TRUE(tracer->trace(rays, hits));
     for (const gpu::RayHit& hit : hits)
         EXPECT_TRUE(std::isfinite(hit.t + hit.position.x + hit.position.y + hit.position.z + hit.normal.x + hit.radiance.x));
+}
+
+TEST_F(GpuTrace, AnswersAlikeThroughTexelsAndAddresses)
+{
+    const FieldData field = litCornell();
+    std::vector<gpu::RayHit> hits[2];
+    for (const WordAccess access : {WordAccess::texelBuffers, WordAccess::addresses})
+    {
+        const auto device = makeLightField(gpu(), field, {}, access);
+        ASSERT_TRUE(device) << device.error().message;
+        EXPECT_EQ((device->constants()[gpu::kFieldFlagsId] & gpu::kByTexels) != 0, access == WordAccess::texelBuffers);
+        const auto tracer = makeRayTracer(gpu(), *device);
+        const RaySet set = cornellRays(4000);
+        std::vector<gpu::Ray> rays;
+        for (size_t i = 0; i < set.size(); ++i) rays.push_back({set.origins[i], set.directions[i], set.normals[i]});
+        std::vector<gpu::RayHit>& answers = hits[int(access)];
+        answers.resize(rays.size());
+        ASSERT_TRUE(tracer->trace(rays, answers));
+    }
+    EXPECT_EQ(std::memcmp(hits[0].data(), hits[1].data(), hits[0].size() * sizeof(gpu::RayHit)), 0);
 }
 
 TEST_F(GpuTrace, RefusesKnobsOutOfRangeByName)
