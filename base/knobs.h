@@ -247,7 +247,7 @@ inline constexpr Knob<uint32_t> resolution{
     .least = 64,
     .most = 2048,
     .unit = "texels",
-    .also = "power of two, or multiple of 32 with cube faces",
+    .also = "multiple of 32, or of 16 with octahedral maps",
     .what = "Side of an octahedral map in texels; the cube chart's faces have half of it",
     .buys = "detail of what a probe sees; memory grows with its square; 416 takes the memory of octahedral maps of 512",
     .readme = true};

@@ -139,6 +139,7 @@ Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t low
         return Error{ErrorCode::badArgument,
                      fmt::format("A low factor of {} does not divide maps of {} texels; give 8, 16 or 32", factor, field.info.faceSize)};
     setLowFactor(field, factor);
+    if (baseline != Baseline::b0PlusOctree) field.octree = {}; // a grid finds its probes by a formula, and doesn't pay for an index
     return field;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bench/sweep/tune.h"
+#include "runtime/field/field_data.h"
 
 namespace sconce
 {
@@ -18,7 +19,7 @@ struct Opponent
 {
     const char* name;
     const char* placement;
-    uint32_t faces;            // 0: maps as ours; 1: octahedral maps of as much memory; 2: cube faces of as many texels a side as those
+    uint32_t faces;            // 0: maps as ours; 1: octahedral maps of as much memory; 2: cube faces of a power of two of texels a side
     std::vector<double> curve; // further resolutions, times the default's
 };
 
@@ -30,6 +31,14 @@ const std::vector<Opponent>& opponents()
                                            {"b0plus-octree", "optimised", 1, {0.5, 2.0}},
                                            {"wang", "optimised", 2, {0.5}}};
     return all;
+}
+
+/// Texels a side of the largest octahedral maps that take no more bytes than cube faces of a resolution.
+uint32_t octahedralOfAsMuch(uint32_t resolution)
+{
+    uint32_t size = resolution & ~15u; // whole cells of the low-resolution map
+    while (bytesPerProbe(gpu::kChartOctahedral, size + 16) <= bytesPerProbe(gpu::kChartCube, resolution)) size += 16;
+    return size;
 }
 
 class Planner
@@ -102,7 +111,8 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         PointSettings point = ours;
         point.method = opponent.name;
         point.placement = opponent.placement;
-        if (opponent.faces != 0) point.resolution = opponent.faces * std::bit_ceil(ours.resolution);
+        if (opponent.faces == 1) point.resolution = octahedralOfAsMuch(ours.resolution);
+        if (opponent.faces == 2) point.resolution = 2 * std::bit_ceil(ours.resolution); // wang's chain halves its maps to the last
         theirs.push_back(point);
         planner.addDefault(point);
     }
@@ -122,7 +132,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         // Opponents get what any method has: other numbers of probes and texels, more rays, sparser tracing.
         planner.addProbeCounts(theirs[i], {0.5, 2.0});
         for (const double factor : opponents()[i].curve)
-            planner.addVaried(theirs[i], *findKnob("resolution"), fmt::to_string(uint32_t(theirs[i].resolution * factor)));
+            planner.addVaried(theirs[i], *findKnob("resolution"), fmt::to_string(uint32_t(theirs[i].resolution * factor) & ~15u));
         planner.addVaried(theirs[i], *findKnob("rays"), "4");
         planner.addVaried(theirs[i], *findKnob("trace every"), "4"); // any tracer gains by it
     }

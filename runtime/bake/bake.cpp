@@ -47,9 +47,9 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
 {
     if (settings.chart != gpu::kChartCube && settings.chart != gpu::kChartOctahedral)
         return fmt::format("chart is {}; give kChartCube or kChartOctahedral", settings.chart);
-    const bool even = settings.chart == gpu::kChartCube && settings.resolution % 32 == 0; // faces with three levels of the chain
+    const bool even = settings.resolution % (settings.chart == gpu::kChartCube ? 32 : 16) == 0; // whole cells of two levels of the chain
     if (const std::string fault = faultOf(knobs::resolution, settings.resolution); !fault.empty()) return fault;
-    if (!even && !std::has_single_bit(settings.resolution))
+    if (!even)
         return knob_words::fault(knobs::resolution.name, knobText(settings.resolution), rangeText(knobs::resolution));
     if (!settings.scene.light.areaShadows)
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";

@@ -73,7 +73,7 @@ TEST(Knobs, AreSpelledAsPeopleDo)
     EXPECT_EQ(rangeText(knobs::exposure), "1e-6 to 1e6");
     EXPECT_EQ(rangeText(knobs::goalTime), "above 0 milliseconds");
     EXPECT_EQ(rangeText(knobs::temporal), "on, off");
-    EXPECT_EQ(rangeText(knobs::resolution), "64 to 2048 texels, power of two, or multiple of 32 with cube faces");
+    EXPECT_EQ(rangeText(knobs::resolution), "64 to 2048 texels, multiple of 32, or of 16 with octahedral maps");
 }
 
 } // namespace

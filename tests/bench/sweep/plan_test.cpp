@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/sweep/sweep.h"
+#include "runtime/field/field_data.h"
 
 namespace sconce
 {
@@ -35,6 +36,25 @@ TEST(Plan, BeginsWithOursAndHasEveryMethodAndKnobOnce)
     EXPECT_EQ(methods, (std::set<std::string>{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", "path tracer"}));
     for (const SweptKnob& knob : sweptKnobs())
         EXPECT_EQ(knobsOfOurs.contains(std::string(knob.name)), std::ranges::find(knob.methods, "ours") != knob.methods.end()) << knob.name;
+}
+
+// An octahedral opponent gets the largest maps that take no more bytes than our cube faces.
+TEST(Plan, OctahedralMapsTakeAsMuchMemoryAsCubeFaces)
+{
+    for (const uint32_t resolution : {192u, 256u, 416u, 512u})
+    {
+        PlanSettings settings = ofSixteen();
+        settings.ours.resolution = resolution;
+        settings.methods = {"b0plus"};
+        settings.methodsOnly = true;
+        const auto plan = planPoints(settings);
+        ASSERT_TRUE(plan && plan->size() == 1);
+        const uint32_t theirs = plan->front().settings.resolution;
+        const size_t bytes = bytesPerProbe(gpu::kChartCube, resolution);
+        EXPECT_EQ(theirs % 16, 0u);
+        EXPECT_LE(bytesPerProbe(gpu::kChartOctahedral, theirs), bytes) << resolution;
+        EXPECT_GT(bytesPerProbe(gpu::kChartOctahedral, theirs + 16), bytes) << resolution;
+    }
 }
 
 TEST(Plan, AKnobThatIsNotThereIsASentence)
