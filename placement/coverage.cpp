@@ -109,7 +109,7 @@ Result<Coverage> measureCoverage(const Scene& scene, std::span<const vec3> probe
     if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     const Result<Visibility> visibility = Visibility::build(scene);
     if (!visibility) return visibility.error();
-    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress);
+    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress, settings.open);
     if (!space) return space.error();
     return measureCoverage(scene, *visibility, *space, probes, settings, progress);
 }

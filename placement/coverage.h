@@ -30,6 +30,7 @@ struct Coverage
 struct CoverageSettings
 {
     std::vector<vec3> inside;         // as in PlaceSettings
+    OpenSpace open;                   // as in PlaceSettings
     uint64_t seed = 1;                // of the samples; never those that a placement of the same seed was chosen by
     size_t points = 60000;            // samples of each measure, 1,000..10,000,000; the standard error at 99 % is 0.04 % of 60,000
     uint32_t voxels = kDefaultVoxels; // most cells of the distance field

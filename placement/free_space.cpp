@@ -397,8 +397,32 @@ float passageRadius(const FreeSpace& space, const std::vector<uint32_t>& seeds)
     return cells ? std::min({kPassage * float(sum / double(cells)), kWidestPassage, 0.9f * widest}) : 0.0f;
 }
 
+/// Whether one can stand below a point, no more than `height` metres down.
+bool standsOn(const Visibility& visibility, vec3 point, float height)
+{
+    RayHit hit;
+    return visibility.cast(point, vec3(0.0f, -1.0f, 0.0f), hit) && hit.t <= height && !hit.back && hit.normal.y >= kWalkable;
+}
+
+/// Rule 4: adds what was reached near the ground, or takes what was reached in the box.
+void addOpen(FreeSpace& space, const std::vector<uint8_t>& reached, const OpenSpace& open, const Visibility& visibility)
+{
+    const DistanceField& field = space.field;
+    const auto inBox = [&](vec3 p)
+    { return glm::all(glm::lessThanEqual(open.box->low, p)) && glm::all(glm::lessThanEqual(p, open.box->high)); };
+    tbb::parallel_for(size_t(0), field.cells(),
+                      [&](size_t at)
+                      {
+                          const vec3 centre = field.centre(field.cell(at));
+                          if (open.box)
+                              space.reachable[at] = reached[at] && inBox(centre);
+                          else if (!space.reachable[at] && reached[at])
+                              space.reachable[at] = standsOn(visibility, centre, open.ground);
+                      });
+}
+
 /// Marks the cells of the given regions and keeps the enclosed ones.
-void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Visibility& visibility)
+void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Visibility& visibility, const OpenSpace& open)
 {
     std::vector<uint8_t> chosen(regions.volume.size(), 0);
     for (uint32_t region : seeds.regions) chosen[region] = 1;
@@ -407,6 +431,7 @@ void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Vi
         if (regions.of[at] != kNoRegion) space.reachable[at] = chosen[regions.of[at]];
     std::vector<uint8_t> reached = space.reachable;
     keepEnclosed(space, seeds.indoors ? kIndoorEnclosedShare : kEnclosedShare, visibility);
+    if (open.box || open.ground > 0.0f) addOpen(space, reached, open, visibility);
     if (seeds.indoors) reached = space.reachable; // only through kept cells: alcoves of the roof are as enclosed as a room
     if (const float radius = passageRadius(space, seeds.cells); radius > 0.0f)
     {
@@ -428,7 +453,7 @@ vec3 FreeSpace::randomPoint(Random& random) const
 }
 
 Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility, std::span<const vec3> inside, uint32_t voxels,
-                                const Progress& progress)
+                                const Progress& progress, const OpenSpace& open)
 {
     const Error cancelled{ErrorCode::cancelled, "The search for free space was cancelled."};
     const Error nothing{ErrorCode::badInput,
@@ -448,7 +473,7 @@ Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility
         if (!seeds) return seeds.error();
         if (seeds->regions.empty()) return nothing;
         indoors = seeds->indoors;
-        fill(space, regions, *seeds, visibility);
+        fill(space, regions, *seeds, visibility, open);
     }
     if (space.cells.empty()) return nothing;
 
@@ -473,7 +498,7 @@ Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility
             seeds.cells.push_back(uint32_t(space.field.index(cell)));
             seeds.regions.push_back(regions.of[seeds.cells.back()]);
         }
-        fill(space, regions, seeds, visibility);
+        fill(space, regions, seeds, visibility, open);
         if (space.cells.empty()) return nothing;
     }
     if (!report(progress, "free space", 1.0)) return cancelled;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,13 @@ namespace sconce
 {
 
 class Random;
+
+/// What counts beside what is enclosed.
+struct OpenSpace
+{
+    float ground = 0.0f;       // metres above ground that a viewer stands on, out to the scene's box; 0: bare ground doesn't count
+    std::optional<Bounds> box; // all free space in it that is reached, and nothing else
+};
 
 /// The space that is lit: where a viewer can be, and hence where probes may be.
 ///
@@ -31,6 +39,9 @@ class Random;
 ///    not. If every seed is indoors (kIndoors of all its rays hit), so is the space: kIndoorEnclosedShare holds
 ///    instead, and cells join a seed through kept cells only; a seed in the garden keeps the garden. If no cell is enclosed, the whole
 ///    reached space is kept.
+/// 4. With OpenSpace::ground, reached cells count, too, that lie no higher than that above a surface that one can stand on (kWalkable);
+/// with
+///    OpenSpace::box the reached cells in it, in place of rule 3.
 struct FreeSpace
 {
     DistanceField field;
@@ -60,12 +71,13 @@ inline constexpr float kEnclosedShare = 0.12f; // of the rays between the horizo
 inline constexpr float kIndoorEnclosedShare = 0.6f;
 inline constexpr float kIndoors = 0.99f;    // of all rays
 inline constexpr float kGroundShare = 0.4f; // of the rays within 45 degrees of straight down; one half at the open front of a box
+inline constexpr float kWalkable = 0.7f;    // least cosine of the ground's normal with the vertical: 45 degrees
 inline constexpr uint32_t kDefaultVoxels = knobs::distanceVoxels.value;
 
 /// @param inside  world points, metres, that say which space counts; empty: the cameras, else the largest enclosed region
 /// @param voxels  most cells of the distance field
 /// Errors: badArgument when an inside point lies in solid or outside the scene, badInput when nothing is free, cancelled.
 Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility, std::span<const vec3> inside,
-                                uint32_t voxels = kDefaultVoxels, const Progress& progress = {});
+                                uint32_t voxels = kDefaultVoxels, const Progress& progress = {}, const OpenSpace& open = {});
 
 } // namespace sconce

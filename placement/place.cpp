@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "base/numbers.h"
 #include "base/random.h"
 #include "placement/ball_shrinking.h"
 #include "placement/grid.h"
@@ -60,6 +61,10 @@ std::string faultOf(const PlaceSettings& settings)
     for (const vec3& point : settings.inside)
         if (!std::isfinite(point.x + point.y + point.z))
             return fmt::format("the inside point ({}, {}, {}) is not finite.", point.x, point.y, point.z);
+    if (!(settings.open.ground >= 0.0f && settings.open.ground <= 1e6f))
+        return fmt::format("open ground counts up to {} m; give 0 to 1e6.", settings.open.ground);
+    if (settings.open.box && !(finite(settings.open.box->low) && finite(settings.open.box->high) && !settings.open.box->empty()))
+        return "the box of the space that counts is empty or not finite; give its low corner, then its high one.";
     if (ownGrid && settings.method != PlaceSettings::Method::grid) return "grid is given but the method is not grid; choose one.";
     if (ownGrid && settings.count != 0) return "grid and count are both given; choose one.";
     if (ownGrid && (glm::any(glm::lessThan(settings.grid, glm::ivec3(1))) ||
@@ -329,11 +334,12 @@ Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, 
     if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     const Result<Visibility> visibility = Visibility::build(scene);
     if (!visibility) return visibility.error();
-    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress);
+    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress, settings.open);
     if (!space) return space.error();
     report.reachable = space->bounds;
     report.reachableVolume = space->volume;
     report.voxel = space->field.voxel;
+    report.surfaceLeftOut = shareLeftOut(scene, *visibility, *space, settings.seed ^ 0x6c656674ull);
 
     const bool isGrid = settings.method == PlaceSettings::Method::grid;
     Result<ProbeSet> set = isGrid ? Result<ProbeSet>(placeGrid(*space, settings, report))

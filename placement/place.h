@@ -32,6 +32,7 @@ struct PlaceSettings
     uint32_t count = knobs::count.value;    // probes; 0: the fewest that reach `coverage`; a grid takes 64
     float coverage = knobs::coverage.value; // share of the surface points that rays hit; when count is 0, grid apart
     std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
+    OpenSpace open;           // what counts beside what is enclosed
     std::vector<Pin> pins;    // positions that the user decides; not with a grid. Kept ones count as probes of `count`, added ones don't
     uint64_t seed = knobs::placeSeed.value;                // of every random choice; same scene, settings and seed: same bytes
     float clearance = knobs::clearance.value;              // metres from every surface, sdf; 0: one cell of the distance field
@@ -49,6 +50,7 @@ struct PlaceReport
 {
     Bounds reachable;             // of the reachable free space, metres
     double reachableVolume = 0.0; // cubic metres
+    float surfaceLeftOut = 0.0f;  // share of the scene's surface, by area, with no space that counts on either side of it
     float voxel = 0.0f;           // side of a cell of the distance field, metres
     float clearance = 0.0f;       // that was kept, metres; 0 for a grid
     float comfort = 0.0f;         // that most keep, metres

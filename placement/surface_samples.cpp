@@ -29,6 +29,50 @@ template <class Draw> std::vector<Surfel> collect(size_t count, size_t triesEach
     return surfels;
 }
 
+/// Points evenly by area over the triangles that are there.
+class AreaPoints
+{
+public:
+    AreaPoints(const Scene& drawn, const Visibility& visibility) : scene(drawn), areaUpTo(drawn.triangles.size())
+    {
+        for (size_t triangle = 0; triangle < areaUpTo.size(); ++triangle)
+        {
+            const uvec3 corners = scene.triangles[triangle];
+            const vec3 a = scene.positions[corners.x];
+            if (visibility.presence()[triangle] != Presence::absent)
+                total += 0.5 * double(glm::length(glm::cross(scene.positions[corners.y] - a, scene.positions[corners.z] - a)));
+            areaUpTo[triangle] = total;
+        }
+    }
+
+    /// Uniform on a triangle: Turk 1990, "Generating Random Points in Triangles".
+    vec3 draw(Random& random, uint32_t& triangle) const
+    {
+        const double pick = total * double(random.uniform());
+        triangle = uint32_t(std::upper_bound(areaUpTo.begin(), areaUpTo.end() - 1, pick) - areaUpTo.begin());
+        const uvec3 corners = scene.triangles[triangle];
+        const float root = std::sqrt(random.uniform()), split = random.uniform();
+        return (1.0f - root) * scene.positions[corners.x] + root * (1.0f - split) * scene.positions[corners.y] +
+               root * split * scene.positions[corners.z];
+    }
+
+private:
+    const Scene& scene;
+    std::vector<double> areaUpTo;
+    double total = 0.0;
+};
+
+/// Whether space that counts lies before a surface point: cells that touch the surface are not free, so the next ones are asked, too.
+bool countsBefore(const Visibility& visibility, const FreeSpace& space, vec3 point, vec3 normal)
+{
+    for (const float cells : {0.75f, 1.5f, 2.25f})
+    {
+        const vec3 before = point + cells * space.field.voxel * normal;
+        if (space.contains(before) && visibility.sees(before, point, normal)) return true;
+    }
+    return false;
+}
+
 } // namespace
 
 std::vector<Surfel> raySurfels(const Visibility& visibility, const FreeSpace& space, size_t count, uint64_t seed)
@@ -48,40 +92,35 @@ std::vector<Surfel> raySurfels(const Visibility& visibility, const FreeSpace& sp
 
 std::vector<Surfel> areaSurfels(const Scene& scene, const Visibility& visibility, const FreeSpace& space, size_t count, uint64_t seed)
 {
-    std::vector<double> areaUpTo(scene.triangles.size());
-    double total = 0.0;
-    for (size_t triangle = 0; triangle < areaUpTo.size(); ++triangle)
-    {
-        const uvec3 corners = scene.triangles[triangle];
-        const vec3 a = scene.positions[corners.x];
-        if (visibility.presence()[triangle] != Presence::absent)
-            total += 0.5 * double(glm::length(glm::cross(scene.positions[corners.y] - a, scene.positions[corners.z] - a)));
-        areaUpTo[triangle] = total;
-    }
+    const AreaPoints points(scene, visibility);
     return collect(count, 24,
                    [&](size_t stream, Surfel& surfel) -> bool
                    {
                        Random random(seed, stream);
-                       const double pick = total * double(random.uniform());
-                       const size_t triangle = size_t(std::upper_bound(areaUpTo.begin(), areaUpTo.end() - 1, pick) - areaUpTo.begin());
-                       const uvec3 corners = scene.triangles[triangle];
-                       // Uniform on a triangle: Turk 1990, "Generating Random Points in Triangles".
-                       const float root = std::sqrt(random.uniform()), split = random.uniform();
-                       const vec3 point = (1.0f - root) * scene.positions[corners.x] + root * (1.0f - split) * scene.positions[corners.y] +
-                                          root * split * scene.positions[corners.z];
-                       // Either side, since surfaces are seen from both; the test below drops the side that nobody gets to.
-                       const vec3 normal = geometricNormal(scene, uint32_t(triangle)) * (random.uniform() < 0.5f ? 1.0f : -1.0f);
-                       // A surfel counts where free space lies before it: cells that touch the surface are not free, so the next ones are
-                       // asked, too.
-                       for (const float cells : {0.75f, 1.5f, 2.25f})
-                       {
-                           const vec3 before = point + cells * space.field.voxel * normal;
-                           if (!space.contains(before) || !visibility.sees(before, point, normal)) continue;
-                           surfel = {point, normal, uint32_t(triangle), false};
-                           return true;
-                       }
-                       return false;
+                       uint32_t triangle;
+                       const vec3 point = points.draw(random, triangle);
+                       // Either side, since surfaces are seen from both; the side that nobody gets to is dropped.
+                       const vec3 normal = geometricNormal(scene, triangle) * (random.uniform() < 0.5f ? 1.0f : -1.0f);
+                       if (!countsBefore(visibility, space, point, normal)) return false;
+                       surfel = {point, normal, triangle, false};
+                       return true;
                    });
+}
+
+float shareLeftOut(const Scene& scene, const Visibility& visibility, const FreeSpace& space, uint64_t seed)
+{
+    constexpr size_t kPoints = 8000;
+    const AreaPoints points(scene, visibility);
+    std::vector<uint8_t> out(kPoints);
+    tbb::parallel_for(size_t(0), kPoints,
+                      [&](size_t i)
+                      {
+                          Random random(seed, i);
+                          uint32_t triangle;
+                          const vec3 point = points.draw(random, triangle), normal = geometricNormal(scene, triangle);
+                          out[i] = !countsBefore(visibility, space, point, normal) && !countsBefore(visibility, space, point, -normal);
+                      });
+    return float(std::count(out.begin(), out.end(), uint8_t(1))) / float(kPoints);
 }
 
 float viewQuality(const Surfel& surfel, vec3 probe, float spacing)

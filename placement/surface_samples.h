@@ -27,6 +27,9 @@ std::vector<Surfel> raySurfels(const Visibility& visibility, const FreeSpace& sp
 /// Evenly spread over the area of the reachable surface: sides of triangles that have a reachable cell before them, in plain view.
 std::vector<Surfel> areaSurfels(const Scene& scene, const Visibility& visibility, const FreeSpace& space, size_t count, uint64_t seed);
 
+/// Share of the scene's surface, by area, that has no reachable space on either side: what a placement doesn't answer for. Within 1 %.
+float shareLeftOut(const Scene& scene, const Visibility& visibility, const FreeSpace& space, uint64_t seed);
+
 /// How well a probe sees a surfel that nothing hides, in (0,1]: cosine, times 1/2 at `spacing` metres and falling with distance; 0 when it
 /// can't be seen for its cosine. Texels per metre of surface fall with both. Source: the terms of Wang et al. 2019, section 3.2.
 float viewQuality(const Surfel& surfel, vec3 probe, float spacing);

@@ -1,6 +1,7 @@
 #include "scene/builtin_scenes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -204,6 +205,69 @@ Scene makeHall()
     return scene;
 }
 
+constexpr float kPlain = 200.0f; // metres a side
+
+/// Height of the dunes; flat around the ruin in the middle.
+float duneHeight(float x, float z)
+{
+    const float away = std::clamp((std::sqrt(x * x + z * z) - 12.0f) / 20.0f, 0.0f, 1.0f);
+    const float waves =
+        1.6f * std::sin(0.071f * x + 0.03f * z) + 0.9f * std::sin(0.043f * x - 0.11f * z + 1.3f) + 0.4f * std::sin(0.19f * (x + z));
+    return away * away * (3.0f - 2.0f * away) * (waves + 1.2f);
+}
+
+// 200 m of dunes with one small cluttered ruin: open ground, where a viewer may stand anywhere, and a room half without a roof.
+Scene makePlain()
+{
+    Scene scene;
+    scene.name = "plain";
+    MeshBuilder mesh(scene);
+    const uint32_t sand = mesh.material("sand", vec3(0.62f, 0.49f, 0.31f));
+    const uint32_t stone = mesh.material("sandstone", vec3(0.66f, 0.56f, 0.42f), 0.9f);
+    const uint32_t dark = mesh.material("basalt", vec3(0.12f, 0.12f, 0.13f), 0.35f);
+    const uint32_t bronze = mesh.material("bronze", vec3(0.70f, 0.48f, 0.26f), 0.3f, 1.0f);
+
+    constexpr int kCells = 64;
+    const auto corner = [](int i, int j)
+    {
+        const float x = kPlain * (float(i) / kCells - 0.5f), z = kPlain * (float(j) / kCells - 0.5f);
+        return vec3(x, duneHeight(x, z), z);
+    };
+    for (int i = 0; i < kCells; ++i)
+        for (int j = 0; j < kCells; ++j)
+        {
+            mesh.triangle(corner(i, j), corner(i, j + 1), corner(i + 1, j), sand);
+            mesh.triangle(corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1), sand);
+        }
+
+    BlockSolid walls; // stands a little in the sand, so that no two surfaces coincide
+    walls.fill({-6.0f, -0.3f, -5.0f}, {6.0f, 3.4f, 5.0f}, stone);
+    walls.carve({-5.5f, -0.4f, -4.5f}, {5.5f, 3.5f, 4.5f});
+    walls.carve({-1.0f, -0.4f, 4.4f}, {1.0f, 2.6f, 5.1f}); // the door
+    walls.carve({2.5f, 1.6f, 4.4f}, {6.1f, 3.5f, 5.1f});   // fallen corner
+    walls.carve({5.4f, 2.1f, -1.0f}, {6.1f, 3.5f, 5.1f});
+    walls.carve({-6.1f, 1.2f, 0.5f}, {-5.4f, 2.2f, 1.7f});       // a window
+    walls.fill({-5.5f, 3.1f, -4.5f}, {0.5f, 3.4f, 0.0f}, stone); // what is left of the roof
+    walls.addTo(mesh);
+    for (const vec3 foot : {vec3(-3.0f, -0.1f, 2.4f), vec3(3.2f, -0.1f, 2.4f), vec3(3.2f, -0.1f, -2.6f)})
+        mesh.cylinder(foot, 0.34f, 0.28f, foot.z < 0.0f ? 3.0f : 1.9f, 24, stone);
+    for (int i = 0; i < 9; ++i) // rubble
+    {
+        const float turn = 0.7f * float(i), side = 0.25f + 0.05f * float(i % 4);
+        mesh.boxTurned({-4.4f + 1.05f * float(i), 0.4f * side, -3.2f + 2.1f * float(i % 3)}, {side, 0.9f * side, 1.4f * side}, turn,
+                       i % 3 ? stone : dark);
+    }
+    mesh.box({-4.6f, -0.1f, -4.0f}, {-2.6f, 0.8f, -3.0f}, dark);
+    mesh.sphere({-3.6f, 1.2f, -3.5f}, 0.4f, 32, 20, bronze);
+
+    scene.lights.push_back(sunLight({-0.5f, -0.62f, 0.35f}, {6.0f, 5.4f, 4.5f}));
+    scene.sky = vec3(0.45f, 0.62f, 0.95f);
+    mesh.camera("main", {15.0f, 2.2f, 18.0f}, {0.0f, 1.2f, 0.0f}, 55.0f);
+    mesh.camera("inside", {4.3f, 1.7f, 3.4f}, {-3.4f, 0.9f, -2.6f}, 70.0f);
+    mesh.camera("dunes", {-70.0f, duneHeight(-70.0f, 55.0f) + 1.8f, 55.0f}, {0.0f, 2.0f, 0.0f}, 60.0f);
+    return scene;
+}
+
 } // namespace
 
 std::vector<BuiltinScene> builtinScenes()
@@ -212,7 +276,8 @@ std::vector<BuiltinScene> builtinScenes()
             {"cornell-glossy", "the same box with glossy floor, walls and boxes (roughness 0.1 to 0.3)"},
             {"temple", "stairs, round columns, tiled glossy floor and a dim inner room, under sun and sky"},
             {"hall", "closed hall with floating stairs, gallery and corridor, lit by area emitters only"},
-            {"town", "street, square and furnished two-storey houses, indoors and outdoors"}};
+            {"town", "street, square and furnished two-storey houses, indoors and outdoors"},
+            {"plain", "200 m of dunes around one small cluttered ruin, under sun and sky"}};
 }
 
 Result<Scene> makeBuiltinScene(std::string_view name)
@@ -222,6 +287,7 @@ Result<Scene> makeBuiltinScene(std::string_view name)
     if (name == "temple") return makeTemple();
     if (name == "hall") return makeHall();
     if (name == "town") return makeTown();
+    if (name == "plain") return makePlain();
     std::string known;
     for (const BuiltinScene& scene : builtinScenes()) known += (known.empty() ? "" : ", ") + scene.name;
     return Error{ErrorCode::badArgument, fmt::format("There is no built-in scene named '{}'; use one of {}.", name, known)};

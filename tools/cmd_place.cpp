@@ -38,6 +38,21 @@ Result<uint32_t> countFor(uint64_t memory, uint32_t resolution)
     return uint32_t(std::min<uint64_t>(memory / each, kMostProbes));
 }
 
+/// Throws what CLI11 ends as a usage error.
+void readSpace(const std::string& text, OpenSpace& open)
+{
+    open = {};
+    if (text == "enclosed") return;
+    constexpr std::string_view kGround = "ground:";
+    const bool ground = text.starts_with(kGround);
+    const Result<std::vector<float>> n = parseNumbers(ground ? text.substr(kGround.size()) : text, {ground ? size_t(1) : size_t(6)});
+    if (!n) throw CLI::ValidationError("--space", n.error().message);
+    if (ground)
+        open.ground = (*n)[0];
+    else
+        open.box = Bounds{{(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}};
+}
+
 int runPlace(const PlaceOptions& options, const Context& context)
 {
     const Stopwatch watch;
@@ -97,6 +112,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     json["median_distance"] = report.medianDistance;
     json["reachable"] = {
         {"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
+    json["surface_left_out"] = report.surfaceLeftOut;
     json["voxel"] = report.voxel;
     json["clearance"] = report.clearance;
     json["candidates"] = report.candidates;
@@ -110,7 +126,8 @@ int runPlace(const PlaceOptions& options, const Context& context)
         std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
                   << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area "
                   << 100.0f * report.coverageArea << " %\n"
-                  << "reachable space: " << report.reachableVolume << " m^3, cells of " << report.voxel << " m\n"
+                  << "reachable space: " << report.reachableVolume << " m^3, cells of " << report.voxel << " m; it leaves out "
+                  << 100.0f * report.surfaceLeftOut << " % of the scene's surface\n"
                   << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
     }
     return exitOk;
@@ -172,6 +189,14 @@ void addPlaceCommand(CLI::App& app, Context& context)
         ->expected(1)
         ->take_all()
         ->type_name("X,Y,Z");
+    command
+        ->add_option_function<std::string>(
+            "--space", [&settings](const std::string& text) { readSpace(text, settings.open); },
+            described(
+                "The space that counts: enclosed is rooms, courts and streets; ground:METRES also what lies no higher than that above any "
+                "ground one can stand on, out to the scene's box; X,Y,Z,X,Y,Z all free space in that box and nothing else",
+                words("enclosed")))
+        ->type_name("enclosed|ground:METRES|BOX");
     command
         ->add_option_function<std::string>(
             "--explain", [options = options.get()](const std::string& file) { options->explain = file, options->settings.explain = true; },

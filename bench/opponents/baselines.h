@@ -45,8 +45,8 @@ Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t low
 /// A pass with the interface of trace_rays.comp, for makeRayTracer().
 Spirv traceRaysPass(Baseline baseline);
 
-/// Passes for makeIndirectLight(). Grids are lit by the eight corners of a point's cell: b0 by the weights of McGuire et al. 2017, b0plus by those
-/// of Majercik et al. 2021; what has lists is lit by them, as ours is.
+/// Passes for makeIndirectLight(). Grids are lit by the eight corners of a point's cell: b0 by the weights of McGuire et al. 2017, b0plus
+/// by those of Majercik et al. 2021; what has lists is lit by them, as ours is.
 LightShaders lightPasses(Baseline baseline);
 
 /// The bounces of a bake over a grid, for BakeSettings: by its eight corners, too, with b0plus's weights.

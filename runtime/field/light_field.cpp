@@ -92,8 +92,9 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
                           {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding},
                           {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
                           {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding}};
-    made.byTexels = access == WordAccess::texelBuffers &&
-                    std::ranges::all_of(parts, [&](const Part& part) { return part.words.size() <= gpu.properties.limits.maxTexelBufferElements; });
+    made.byTexels =
+        access == WordAccess::texelBuffers &&
+        std::ranges::all_of(parts, [&](const Part& part) { return part.words.size() <= gpu.properties.limits.maxTexelBufferElements; });
     for (const Part& part : parts)
     {
         if (part.words.empty()) continue;
@@ -169,9 +170,9 @@ VkDescriptorSet LightField::descriptorSet() const
 std::array<uint32_t, 2> LightField::constants() const
 {
     std::array<uint32_t, 2> values{};
-    values[gpu::kFieldFlagsId] =
-        (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
-        (shared->byTexels ? gpu::kByTexels : 0u);
+    values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
+                                 (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
+                                 (shared->byTexels ? gpu::kByTexels : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

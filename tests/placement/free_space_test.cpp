@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "placement/surface_samples.h"
 #include "tests/placement/box_scenes.h"
 
 namespace sconce
@@ -28,6 +29,30 @@ void expectBox(const FreeSpace& space, vec3 low, vec3 high)
         EXPECT_NEAR(space.bounds.low[axis], low[axis], 1.1f * space.field.voxel) << axis;
         EXPECT_NEAR(space.bounds.high[axis], high[axis], 1.1f * space.field.voxel) << axis;
     }
+}
+
+// A viewer who walks on the bare plane is in the space that counts once it is said that the ground does.
+TEST(FreeSpace, OpenGroundCountsUpToItsHeightWhenAskedFor)
+{
+    Scene scene = emptyScene();
+    scene.materials[0].doubleSided = true;
+    addQuad(scene, {-20, 0, -20}, {0, 0, 40}, {40, 0, 0});
+    addQuad(scene, {-2, 0, -2}, {0, 4, 0}, {4, 0, 0}); // four walls
+    addQuad(scene, {-2, 0, 2}, {0, 4, 0}, {4, 0, 0});
+    addQuad(scene, {-2, 0, -2}, {0, 4, 0}, {0, 0, 4});
+    addQuad(scene, {2, 0, -2}, {0, 4, 0}, {0, 0, 4});
+    const auto visibility = Visibility::build(scene);
+    ASSERT_TRUE(visibility);
+    const std::vector<vec3> inside = {{10, 1, 10}};
+    const auto found = [&](const OpenSpace& open) { return std::move(*findFreeSpace(scene, *visibility, inside, 400000, {}, open)); };
+    const FreeSpace ground = found({.ground = 2.0f, .box = {}});
+    for (const vec3 p : {vec3(10, 1, 10), vec3(-18, 1.5f, 17), vec3(3, 1, 0)}) EXPECT_TRUE(ground.contains(p)) << p.x;
+    EXPECT_FALSE(ground.contains({10, 3.5f, 10})) << "the air above";
+    const FreeSpace box = found({.ground = 0.0f, .box = Bounds{{5, 0, 5}, {15, 3, 15}}});
+    EXPECT_TRUE(box.contains({10, 2, 10}));
+    EXPECT_FALSE(box.contains({-10, 1, -10}));
+    EXPECT_LT(shareLeftOut(scene, *visibility, ground, 1), 0.05f);
+    EXPECT_NEAR(shareLeftOut(scene, *visibility, box, 1), 1.0f - 100.0f / 1664.0f, 0.03f) << "100 of 1,664 square metres";
 }
 
 TEST(FreeSpace, ClosedRoomIsFreeUpToItsWalls)

@@ -98,7 +98,7 @@ TEST_P(BuiltinScenes, IsTheSameEveryTime)
     EXPECT_EQ(a.triangleMaterial, b.triangleMaterial);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes, testing::Values("cornell", "cornell-glossy", "temple", "hall", "town"),
+INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes, testing::Values("cornell", "cornell-glossy", "temple", "hall", "town", "plain"),
                          [](const auto& param)
                          {
                              std::string name = param.param;
