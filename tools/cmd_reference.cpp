@@ -76,7 +76,8 @@ int runCompare(const CompareOptions& options, const Context& context)
     for (const std::string& name : split(options.metrics, ','))
     {
         if (!wanted.contains(name))
-            return fail(ErrorCode::badArgument, fmt::format("--metric: there is no metric '{}'; there are mse, relmse, psnr, flip, mean.", name));
+            return fail(ErrorCode::badArgument,
+                        fmt::format("--metric: there is no metric '{}'; there are mse, relmse, psnr, flip, mean.", name));
         *wanted[name] = true;
     }
     std::vector<std::pair<std::string, float>> limits;
@@ -85,8 +86,9 @@ int runCompare(const CompareOptions& options, const Context& context)
         const std::vector<std::string> parts = split(limit, '=');
         const Result<std::vector<float>> value = parseNumbers(parts.back(), {1});
         if (parts.size() != 2 || !wanted.contains(parts[0]) || !value)
-            return fail(ErrorCode::badArgument,
-                        fmt::format("--fail-above: '{}' is not METRIC=X with a metric of mse, relmse, psnr, flip, mean and a number.", limit));
+            return fail(
+                ErrorCode::badArgument,
+                fmt::format("--fail-above: '{}' is not METRIC=X with a metric of mse, relmse, psnr, flip, mean and a number.", limit));
         // A limit asks for its metric as well: without a number there would be nothing to compare with it.
         *wanted[parts[0]] = true;
         limits.emplace_back(parts[0], value->front());
@@ -158,7 +160,9 @@ void addReferenceCommands(CLI::App& app, Context& context)
     compare
         ->add_option(
             "--metric", compareOptions->metrics,
-            described("Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), mean (over the reference's), separated by commas", words("all")))
+            described(
+                "Of mse, relmse (error^2 / (reference^2 + 0.01)), psnr (dB), flip (0..1), mean (over the reference's), separated by commas",
+                words("all")))
         ->type_name("LIST");
     compare
         ->add_option("--fail-above", compareOptions->limits,

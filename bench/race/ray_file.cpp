@@ -1,6 +1,7 @@
 #include "bench/race/ray_file.h"
 
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -57,6 +58,7 @@ Error damaged(const std::filesystem::path& file, const char* what)
 
 Status saveRays(const RaySet& set, const std::filesystem::path& file)
 {
+    assert(set.truth.size() == set.size() && set.fartherTruth.size() == set.size());
     Header header;
     header.rays = uint32_t(set.size());
     header.diagonal = set.diagonal;

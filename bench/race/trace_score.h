@@ -29,7 +29,7 @@ struct RaySet
     std::vector<vec3> normals;          // [n] geometric normal of the surface they leave, on the ray's side; 0 when it is not known
     std::vector<float> startCosine;     // [n] with the surface they leave; below 0.05 (3 degrees) is a grazing start
     std::vector<RayTruth> truth;        // [n]
-    std::vector<RayTruth> fartherTruth; // [n] of the rays that start kFartherStart further off; [0]: nobody asked
+    std::vector<RayTruth> fartherTruth; // [n] of the same rays begun kFartherStart further off; or [0], where no opponent asks
     float diagonal = 0.0f;              // of the scene, metres
 
     size_t size() const { return origins.size(); }

@@ -23,6 +23,8 @@ RaySet threeRays()
         set.truth.push_back({.hit = i != 1, .t = i == 1 ? 0.0f : float(i) + 0.25f});
     }
     set.startCosine.assign(3, 1.0f);
+    set.fartherTruth = set.truth;
+    set.fartherTruth[2].t = 2.0f;
     return set;
 }
 
@@ -31,7 +33,7 @@ TEST(RayFile, GivesBackRaysAndWhatJudgesThem)
     const testing_support::TestFolder folder;
     const RaySet set = threeRays();
     ASSERT_TRUE(saveRays(set, folder / "a.rays").ok());
-    EXPECT_EQ(testing_support::readText(folder / "a.rays").size(), 32u + 3 * 40);
+    EXPECT_EQ(testing_support::readText(folder / "a.rays").size(), 32u + 3 * 44);
     const auto again = loadRays(folder / "a.rays");
     ASSERT_TRUE(again.ok()) << again.error().message;
     EXPECT_EQ(again->diagonal, set.diagonal);
@@ -40,7 +42,10 @@ TEST(RayFile, GivesBackRaysAndWhatJudgesThem)
     EXPECT_EQ(again->normals, set.normals);
     for (size_t i = 0; i < set.size(); ++i)
         for (const TracedRay& traced : {TracedRay{TraceStatus::hit, 0.25f}, {TraceStatus::miss}, {TraceStatus::unknown}})
+        {
             EXPECT_EQ(judge(again->truth[i], traced, again->diagonal), judge(set.truth[i], traced, set.diagonal)) << i;
+            EXPECT_EQ(again->fartherTruth[i].t, set.fartherTruth[i].t) << i;
+        }
 }
 
 TEST(RayFile, WhatIsNoRayFileIsASentence)

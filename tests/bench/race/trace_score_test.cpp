@@ -36,12 +36,18 @@ TEST(TraceScore, EachVerdictOnceByHand)
     EXPECT_DOUBLE_EQ(score.right1, 0.99);
     EXPECT_DOUBLE_EQ(score.right02, 0.49);
     EXPECT_DOUBLE_EQ(score.unresolved, 0.01);
+    EXPECT_DOUBLE_EQ(score.assumed1, 1.0) << "it lost sight where the truth is";
+    EXPECT_DOUBLE_EQ(score.assumed02, 0.5);
     EXPECT_DOUBLE_EQ(score.handoffs.mean, 49.5);
     EXPECT_EQ(score.handoffs.p95, 94u); // 95th smallest of 0..99
     EXPECT_EQ(score.handoffs.max, 99u);
     EXPECT_DOUBLE_EQ(score.distanceReads.mean, 2.0);
     EXPECT_EQ(score.indexReads.p95, 0u);
     EXPECT_EQ(score.indexReads.max, 1000u);
+    // Of rays that started a little ahead, each distance is the less by it.
+    set.fartherTruth = set.truth;
+    for (RayTruth& truth : set.fartherTruth) truth.t = 10.5f;
+    EXPECT_DOUBLE_EQ(scoreTraces(set, traced, true).right02, 0.5);
 }
 
 // Nearest rank: the 95th of 100, the 19th of 20, and of fewer than 20 the last.

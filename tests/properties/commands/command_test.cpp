@@ -236,7 +236,7 @@ TEST(Command, ScenesListsTheBuiltInOnes)
     const json list = jsonOf(sconceCommand({"scenes", "--json"}));
     std::vector<std::string> names;
     for (const json& scene : list) names.push_back(scene.at("name"));
-    EXPECT_EQ(names, (std::vector<std::string>{"cornell", "cornell-glossy", "temple", "hall", "town"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"cornell", "cornell-glossy", "temple", "hall", "town", "plain"}));
     const std::string text = sconceCommand({"scenes"}).out;
     for (const std::string& name : names) EXPECT_NE(text.find(name), std::string::npos);
 }

@@ -108,23 +108,24 @@ protected:
 
 TEST_F(HardFrames, RoughnessExactlyZeroAndOneAgainstThePathTracer)
 {
-    const auto field = bakeField(cornell(), kCornellProbes, 128);
-    ASSERT_TRUE(field) << field.error().message;
     for (const float roughness : {0.0f, 1.0f})
     {
+        // Of the scene itself, so that what surfaces throw on others has it, too: the frame's own setting is of what the eye sees alone.
+        Scene scene = cornell();
+        for (Material& material : scene.materials) material.roughness = roughness;
+        const auto field = bakeField(scene, kCornellProbes, 128);
+        ASSERT_TRUE(field) << field.error().message;
         RenderSettings settings = settingsOf(64);
-        settings.roughness = roughness;
         settings.glossyRays = 8;
         settings.areaSamples = 64;
-        const auto frame = drawWith(*field, cornell(), settings);
+        const auto frame = drawWith(*field, scene, settings);
         ASSERT_TRUE(frame) << frame.error().message;
         ReferenceSettings reference;
         reference.width = reference.height = 64;
         reference.samples = 128;
         reference.pixelCentre = true;
-        reference.roughness = roughness;
-        reference.camera = cornell().cameras.front();
-        const ImageSet truth = std::move(renderReference(cornell(), reference)->images);
+        reference.camera = scene.cameras.front();
+        const ImageSet truth = std::move(renderReference(scene, reference)->images);
         const std::string name = roughness > 0.0f ? "every roughness exactly 1" : "every roughness exactly 0";
         const size_t pixels = frame->beauty.size();
         const double asked = mean(truth.find("beauty")->pixels), glossy = mean(truth.find("glossy_indirect")->pixels);
