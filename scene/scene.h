@@ -47,8 +47,8 @@ struct TextureRef
 };
 
 /// glTF metallic-roughness. Every surface is lit and seen from both sides (real assets are not watertight), unless Scene::twoSided
-/// says otherwise; doubleSided is kept for reports. Alpha: a point is there when alpha >= alphaCutoff, else it is not there at all; of a blended
-/// material each ray, texel and pixel draws a lot whether it is there, with alpha as the chance.
+/// says otherwise; doubleSided is kept for reports. Alpha: a point is there when alpha >= alphaCutoff, else it is not there at all; of a
+/// blended material each ray, texel and pixel draws a lot whether it is there, with alpha as the chance.
 struct Material
 {
     std::string name;
@@ -147,7 +147,8 @@ float coverage(const Scene& scene, uint32_t material, vec2 uv);
 /// The normal texture's value at a uv, [0,1]; (0.5, 0.5, 1) where there is none.
 vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv);
 
-/// Mean radiance that a triangle emits, over all of its area: points that are not there emit nothing. By 21 points where textures have a say.
+/// Mean radiance that a triangle emits, over all of its area: points that are not there emit nothing. By 21 points where textures have a
+/// say.
 vec3 meanEmission(const Scene& scene, uint32_t triangle);
 
 /// Checks what every later stage relies on: array lengths agree, indices in range, all numbers finite, normals unit. A host calls it on

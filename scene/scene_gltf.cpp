@@ -787,8 +787,7 @@ Result<Scene> Importer::run(std::string name)
     for (const auto& [sentence, count] : notes)
         scene.warnings.push_back(count == 1 ? sentence : fmt::format("{} ({} times)", sentence, count));
     if (degenerate > 0) scene.warnings.push_back(fmt::format("{} triangles without area were dropped.", degenerate));
-    if (invisible > 0)
-        scene.warnings.push_back(fmt::format("{} triangles that their constant alpha takes away were dropped.", invisible));
+    if (invisible > 0) scene.warnings.push_back(fmt::format("{} triangles that their constant alpha takes away were dropped.", invisible));
     if (scene.triangles.empty()) scene.warnings.push_back("The scene has no triangles; check that its default scene holds meshes.");
     if (const std::string fault = validate(scene); !fault.empty()) return bad(fault);
     return std::move(scene);

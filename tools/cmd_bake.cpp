@@ -48,7 +48,8 @@ int runBake(const BakeOptions& options, const Context& context)
     }
     // The field must say that it is a grid: its probes are then found by a formula, and the bake moves none of them.
     settings.grid = set->grid;
-    if (settings.grid && settings.chart == gpu::kChartOctahedral) settings.bounceShader = gridBouncePass(); // what reads such maps is an opponent
+    if (settings.grid && settings.chart == gpu::kChartOctahedral)
+        settings.bounceShader = gridBouncePass();                                 // what reads such maps is an opponent
     const RenderSettings frame = *quality ? (*quality)->frame : RenderSettings(); // that the field is for
     // By the frames that the field is for: from which roughness on they trace no rays says what the field must keep.
     const Result<EffectPlan> plan = planEffects(checkScene(*scene, frame.raysBelow), options.effects);

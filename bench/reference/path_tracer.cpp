@@ -141,8 +141,8 @@ BrdfValue PathTracer::emitterLight(const ShadingPoint& point, vec3 view, Random&
     if (!any(value.diffuse) && !any(value.specular)) return none;
     const vec3 emission = evaluateMaterial(scene, scene.triangleMaterial[sample.triangle], sample.uv).emission;
     if (!any(emission)) return none;
-    // Seen when the first thing on the way is the drawn triangle itself, so that no epsilon can hide or reveal it, or one at its place; what lies
-    // behind it was met through a hole of it.
+    // Seen when the first thing on the way is the drawn triangle itself, so that no epsilon can hide or reveal it, or one at its place;
+    // what lies behind it was met through a hole of it.
     const auto hit = rays.closest(origin, direction);
     if (!hit || (hit->triangle != sample.triangle && std::abs(hit->t - distance) > 2.0f * rays.offset())) return none;
     const float weight = balance(pdf, scatterPdf(point, view, direction)) / pdf;

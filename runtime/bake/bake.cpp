@@ -49,8 +49,7 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
         return fmt::format("chart is {}; give kChartCube or kChartOctahedral", settings.chart);
     const bool even = settings.resolution % (settings.chart == gpu::kChartCube ? 32 : 16) == 0; // whole cells of two levels of the chain
     if (const std::string fault = faultOf(knobs::resolution, settings.resolution); !fault.empty()) return fault;
-    if (!even)
-        return knob_words::fault(knobs::resolution.name, knobText(settings.resolution), rangeText(knobs::resolution));
+    if (!even) return knob_words::fault(knobs::resolution.name, knobText(settings.resolution), rangeText(knobs::resolution));
     if (!settings.scene.light.areaShadows)
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
     const std::string fault = firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged)});

@@ -342,7 +342,8 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
-        auto made = Pipeline::compute(gpu, bounceShader.empty() ? Spirv(bake_bounce_comp) : bounceShader, sets, sizeof(gpu::BakePush), shaderConstants(field));
+        auto made = Pipeline::compute(gpu, bounceShader.empty() ? Spirv(bake_bounce_comp) : bounceShader, sets, sizeof(gpu::BakePush),
+                                      shaderConstants(field));
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }

@@ -36,7 +36,8 @@ public:
     /// Radiance = direct + what the surfaces reflect of the field's irradiance; then the probe's irradiance of that, moments untouched.
     /// @param direct        the probe's radiance after bakeDirect
     /// @param bounceShader  BakeSettings::bounceShader; the first one that a baker is given stays
-    Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target, Spirv bounceShader);
+    Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
+                      Spirv bounceShader);
 
 private:
     ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo)

@@ -27,7 +27,8 @@ struct LightField::State
 /// How passes read a field's words: the same words either way.
 enum class WordAccess
 {
-    texelBuffers, // where every map fits one, else by address: software Vulkan (Mesa 22.3) gathers texels with one instruction for all lanes
+    texelBuffers, // where every map fits one, else by address: software Vulkan (Mesa 22.3) gathers texels with one instruction for all
+                  // lanes
     addresses
 };
 

@@ -11,8 +11,8 @@
 namespace sconce
 {
 
-/// Passes in place of ours, SPIR-V with the interfaces of trace_glossy.comp and gather_light.comp; empty: our own. The bench brings its opponents
-/// through them.
+/// Passes in place of ours, SPIR-V with the interfaces of trace_glossy.comp and gather_light.comp; empty: our own. The bench brings its
+/// opponents through them.
 struct LightShaders
 {
     Spirv glossy; // of the traced terms
@@ -59,6 +59,7 @@ private:
     }
 };
 
-Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, const LightShaders& passes = {});
+Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc,
+                                        const LightShaders& passes = {});
 
 } // namespace sconce

@@ -20,6 +20,7 @@ template <class Real> struct Pure
 #include "shared/pure_text.h"
 
 #include "shared/brdf_text.h"
+#include "shared/normal_map.h"
 };
 
 } // namespace sconce::pure_text

@@ -3,4 +3,3 @@
 #include "shared/chart.h"
 #include "shared/color.h"
 #include "shared/face_chain.h"
-#include "shared/normal_map.h"
