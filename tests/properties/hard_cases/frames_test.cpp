@@ -130,9 +130,9 @@ TEST_F(HardFrames, RoughnessExactlyZeroAndOneAgainstThePathTracer)
         const size_t pixels = frame->beauty.size();
         const double asked = mean(truth.find("beauty")->pixels), glossy = mean(truth.find("glossy_indirect")->pixels);
         expectAtMost(name + ": numbers that are not finite", pixels, double(notFinite(*frame)), 0.0);
-        expectAtMost(name + ": mean light against the path tracer, relative", pixels, std::abs(mean(frame->beauty) / asked - 1.0), 0.05);
+        expectAtMost(name + ": mean light against the path tracer, relative", pixels, std::abs(mean(frame->beauty) / asked - 1.0), 0.03);
         expectAtMost(name + ": mean of reflections against the path tracer, relative", pixels,
-                     std::abs(mean(frame->glossyIndirect) / glossy - 1.0), 0.25);
+                     std::abs(mean(frame->glossyIndirect) / glossy - 1.0), 0.08, 0.03);
     }
 }
 
