@@ -134,7 +134,6 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to light", scene.name)};
     if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     if (const std::string fault = settingsFault(desc); !fault.empty()) return Error{ErrorCode::badArgument, fault};
-    gpu.releaseStaging(); // what others left of theirs is no part of the scene
     const uint64_t before = gpu.memory().used();
     auto mesh = SceneMesh::create(gpu, scene, space);
     if (!mesh) return mesh.error();
