@@ -95,7 +95,7 @@ void countMaterials(const Scene& scene, float raysBelow, SceneReport& report)
         report.glossyMaterials += smoothest < raysBelow + gpu::kRaysBlend && !isMirror(roughest);
         report.roughMaterials += roughest > raysBelow - gpu::kRaysBlend;
         report.metalMaterials += material.metallic >= 0.5f;
-        report.maskedMaterials += material.alphaCutoff > 0.0f;
+        report.maskedMaterials += material.blended || material.alphaCutoff > 0.0f;
         report.doubleSidedMaterials += material.doubleSided;
     }
 }

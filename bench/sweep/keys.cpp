@@ -95,7 +95,7 @@ std::string keyOf(const Scene& scene)
     {
         hash.add(m.baseColor), hash.add(m.baseColorTexture), hash.add(m.metallic), hash.add(m.roughness);
         hash.add(m.metallicRoughnessTexture), hash.add(m.emission), hash.add(m.emissionTexture), hash.add(m.alphaCutoff);
-        hash.add(m.doubleSided);
+        hash.add(m.blended), hash.add(m.normalTexture), hash.add(m.normalStrength), hash.add(m.doubleSided);
     }
     for (const Image& image : scene.images) hash.add(image.width), hash.add(image.height), hash.addAll(image.rgba);
     for (const Light& light : scene.lights)

@@ -176,7 +176,11 @@ void capScene(Scene& scene, const EffectPlan& plan)
             material.emission = vec3(0.0f);
             material.emissionTexture = {};
         }
-        if (!plan.on("masked")) material.alphaCutoff = 0.0f;
+        if (!plan.on("masked"))
+        {
+            material.alphaCutoff = 0.0f;
+            material.blended = false;
+        }
     }
     // What is closed shows no back face: a scene that doesn't call for sheets keeps both, as ever.
     scene.twoSided = plan.on("thin-two-sided") || !plan.called("thin-two-sided");

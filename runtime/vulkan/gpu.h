@@ -110,7 +110,7 @@ public:
         if (auto status = upload(*buffer, 0, std::as_bytes(values)); !status) return status.error();
         return buffer;
     }
-    /// @param format  of texels of 16 bytes, read-only to shaders. A missingFeature error where the device allows fewer.
+    /// @param format  R32_UINT, or one of 16 bytes; read-only to shaders. A missingFeature error where the device allows fewer.
     template <class T> Result<Buffer> makeTexelBuffer(std::span<const T> values, VkFormat format, const char* what)
     {
         auto buffer = makeBufferWith(values, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, what);

@@ -80,6 +80,9 @@ TEST(SceneCheck, MaterialsDecideTheEffects)
     Scene masked = box();
     masked.materials[0].alphaCutoff = 0.5f;
     EXPECT_TRUE(calls(checkScene(masked), "masked"));
+    Scene glass = box();
+    glass.materials[0].blended = true;
+    EXPECT_TRUE(calls(checkScene(glass), "masked"));
     Scene unused = box();
     unused.materials.push_back(box(0.01f).materials[0]);
     EXPECT_FALSE(calls(checkScene(unused), "mirror")) << "no triangle uses that material";

@@ -73,6 +73,11 @@ TEST(Keys, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)
     EXPECT_NE(keyOf(lit), key);
     EXPECT_NE(keyOf(oneSided), key);
     EXPECT_NE(keyOf(doubled), key);
+    Scene glass = *scene, bumped = *scene, flatter = *scene;
+    glass.materials[0].blended = true;
+    bumped.materials[0].normalTexture.image = 0;
+    flatter.materials[0].normalStrength = 0.5f;
+    for (const Scene* other : {&glass, &bumped, &flatter}) EXPECT_NE(keyOf(*other), key);
 }
 
 TEST(Keys, TellScenesAndSettingsApart)

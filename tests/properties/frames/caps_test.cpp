@@ -143,6 +143,10 @@ TEST_F(CapsTest, WithoutMaskedHolesAreSolid)
     const Made with = capped(whole, "auto,-masked");
     expectSame(with, make(solid, *planEffects(checkScene(solid))), "masked");
     EXPECT_FALSE(with.frame.depth == capped(whole, "auto").frame.depth);
+    Scene glass = whole;
+    for (Material& material : glass.materials)
+        if (material.alphaCutoff > 0.0f) material.blended = true;
+    expectSame(capped(glass, "auto,-masked"), make(solid, *planEffects(checkScene(solid))), "blended");
 }
 
 TEST_F(CapsTest, WithoutTwoSidedSheetsAreThereFromTheirFrontOnly)
