@@ -46,7 +46,7 @@ std::string faultOf(const PlaceSettings& settings)
          faultOf(knobs::distanceVoxels, settings.voxels), faultOf(knobs::candidates, settings.candidates),
          faultOf(knobs::surfels, settings.surfels), faultOf(knobs::refineRounds, settings.refineRounds),
          faultOf(knobs::relocateRounds, settings.relocateRounds), faultOf(knobs::refineSurfels, settings.refineSurfels)});
-    if (!fault.empty()) return fault + ".";
+    if (!fault.empty()) return fmt::format("{}.", fault);
     const size_t kept = numberOf(settings.pins, Pin::Kind::keep), added = numberOf(settings.pins, Pin::Kind::add);
     if (settings.method == PlaceSettings::Method::grid && !settings.pins.empty()) return "pins are given but a grid has no free choice.";
     if (settings.count != 0 && kept > settings.count)
@@ -181,11 +181,11 @@ std::string faultOfPins(const LegalSpace& legal, float clearance)
         const std::string probe = fmt::format("Placement: the pinned probe at ({}, {}, {}) ", p.x, p.y, p.z);
         const float distance = legal.visibility.distance(p, 1.001f * clearance);
         if (!legal.space.contains(p))
-            return probe + "lies in solid or outside the reachable space; move it, or name its space by --inside.";
+            return fmt::format("{}lies in solid or outside the reachable space; move it, or name its space by --inside.", probe);
         if (distance < clearance)
             return fmt::format("{}is {} m from a surface, nearer than the clearance of {} m; move it or lower the clearance.", probe,
                                distance, clearance);
-        if (!legal.allows(p, clearance)) return probe + "lies in a forbidden place or behind a thin wall; move it.";
+        if (!legal.allows(p, clearance)) return fmt::format("{}lies in a forbidden place or behind a thin wall; move it.", probe);
     }
     return {};
 }
@@ -330,7 +330,8 @@ Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, 
 {
     const auto started = std::chrono::steady_clock::now();
     report = {};
-    if (const std::string fault = faultOf(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Placement: " + fault};
+    if (const std::string fault = faultOf(settings); !fault.empty())
+        return Error{ErrorCode::badArgument, fmt::format("Placement: {}", fault)};
     if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     const Result<Visibility> visibility = Visibility::build(scene);
     if (!visibility) return visibility.error();

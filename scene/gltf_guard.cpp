@@ -51,7 +51,7 @@ Result<Bytes> decodeBase64(std::string_view text, const std::string& what)
     for (const char c : text)
     {
         const int8_t digit = value[uint8_t(c)];
-        if (digit < 0) return bad(what + " has a data URI that is not base64; export the file again.");
+        if (digit < 0) return bad(fmt::format("{} has a data URI that is not base64; export the file again.", what));
         bits = bits << 6 | uint32_t(digit);
         if ((held += 6) >= 8) out.push_back(uint8_t(bits >> (held -= 8)));
     }
@@ -62,7 +62,7 @@ Result<Bytes> decodeDataUri(std::string_view uri, const std::string& what)
 {
     const size_t comma = uri.find(',');
     if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-        return bad(what + " has a data URI without ';base64,'; export the file again.");
+        return bad(fmt::format("{} has a data URI without ';base64,'; export the file again.", what));
     const std::string_view text = uri.substr(comma + 1);
     if (text.find('%') == std::string_view::npos) return decodeBase64(text, what);
     const auto plain = percentDecode(text); // '+' and '/' may come as %2B and %2F
@@ -96,7 +96,7 @@ Result<Container> splitGlb(const Bytes& bytes, const std::string& name)
         if (size > length - at - 8)
             return bad(fmt::format("{} has a chunk at byte {} that runs past the end; copy or export it again.", name, at));
         const auto begin = bytes.begin() + int64_t(at + 8);
-        if (at == 12 && type != kJson) return bad(name + " doesn't begin with a JSON chunk; export it again.");
+        if (at == 12 && type != kJson) return bad(fmt::format("{} doesn't begin with a JSON chunk; export it again.", name));
         if (at == 12 && size > GltfLimits::jsonBytes) return bad(fmt::format("{} has {} bytes of JSON; the limit is 256 MiB.", name, size));
         // All chunks but the JSON and the first binary one are skipped, as glTF 2.0 section 4.4.3 asks of unknown types.
         if (at == 12)
@@ -114,7 +114,8 @@ Status checkRequired(const Json& gltf, const std::string& name)
     static constexpr std::string_view known[] = {"KHR_mesh_quantization", "KHR_materials_emissive_strength", "KHR_texture_transform",
                                                  "KHR_lights_punctual",   "EXT_mesh_gpu_instancing",         "EXT_texture_webp"};
     if (!gltf.contains("extensionsRequired")) return success();
-    if (!gltf["extensionsRequired"].is_array()) return bad(name + " has 'extensionsRequired' that is no array; export it again.");
+    if (!gltf["extensionsRequired"].is_array())
+        return bad(fmt::format("{} has 'extensionsRequired' that is no array; export it again.", name));
     for (const Json& entry : gltf["extensionsRequired"])
     {
         const std::string extension = entry.is_string() ? entry.get<std::string>() : entry.dump().substr(0, 40);
@@ -129,10 +130,10 @@ Status checkRequired(const Json& gltf, const std::string& name)
 // tinygltf takes the top-level lists for arrays of objects; so does everything here.
 Status checkShape(const Json& gltf, const std::string& name)
 {
-    if (!gltf.is_object()) return bad(name + " holds JSON that is no object; it is no glTF file.");
+    if (!gltf.is_object()) return bad(fmt::format("{} holds JSON that is no object; it is no glTF file.", name));
     if (!gltf.contains("asset") || !gltf["asset"].is_object() || !gltf["asset"].contains("version") ||
         !gltf["asset"]["version"].is_string())
-        return bad(name + " has no asset version; it is no glTF 2.0 file.");
+        return bad(fmt::format("{} has no asset version; it is no glTF 2.0 file.", name));
     if (const std::string version = gltf["asset"]["version"]; !version.starts_with("2."))
         return bad(fmt::format("{} is glTF version '{}'; convert it to 2.0.", name, version.substr(0, 20)));
     for (const char* list : {"buffers", "bufferViews", "accessors", "images", "textures", "samplers", "materials", "meshes", "nodes",
@@ -184,12 +185,12 @@ Status readBuffers(const Json& gltf, std::optional<Bytes> binary, GuardedGltf& o
         const Json& buffer = gltf["buffers"][i];
         const std::string what = fmt::format("Buffer {}", i);
         if (!buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned())
-            return bad(what + " has no byteLength that is a whole number; export the file again.");
+            return bad(fmt::format("{} has no byteLength that is a whole number; export the file again.", what));
         const uint64_t length = buffer["byteLength"];
         Bytes bytes;
         if (buffer.contains("uri"))
         {
-            if (!buffer["uri"].is_string()) return bad(what + " has a URI that is no string; export the file again.");
+            if (!buffer["uri"].is_string()) return bad(fmt::format("{} has a URI that is no string; export the file again.", what));
             auto read = out.folder.read(buffer["uri"].get_ref<const std::string&>(), what);
             if (!read) return read.error();
             bytes = std::move(*read);
@@ -202,7 +203,7 @@ Status readBuffers(const Json& gltf, std::optional<Bytes> binary, GuardedGltf& o
         else if (i == 0 && binary)
             bytes = std::move(*binary);
         else if (length > 0)
-            return bad(what + " has neither a URI nor a binary chunk; export the file again.");
+            return bad(fmt::format("{} has neither a URI nor a binary chunk; export the file again.", what));
         if (bytes.size() < length)
             return bad(fmt::format("{} has {} bytes but should have {}; the file is incomplete, copy or export it again.", what,
                                    bytes.size(), length));
@@ -285,7 +286,7 @@ Result<Bytes> SceneFolder::read(std::string_view uri, const std::string& what) c
     if (!decoded) return decoded.error();
     const std::string shown = fmt::format("{} names '{}', ", what, uri.substr(0, 200));
     const std::string remedy = "; only files in the scene's own folder are read, copy it there.";
-    if (decoded->empty()) return bad(shown + "which is empty; export the file again.");
+    if (decoded->empty()) return bad(fmt::format("{}which is empty; export the file again.", shown));
     if (decoded->front() == '/' || decoded->find('\\') != std::string::npos || decoded->find(':') != std::string::npos)
         return bad(fmt::format("{}an absolute path, a backslash or another scheme{}", shown, remedy));
     const fs::path relative(*decoded);
@@ -296,7 +297,7 @@ Result<Bytes> SceneFolder::read(std::string_view uri, const std::string& what) c
     const fs::path base = fs::canonical(root, problem);
     if (problem) return unreadable(fmt::format("{} can't be read: the folder {} is not there.", what, root.string()));
     const fs::path target = fs::canonical(base / relative, problem); // resolves symbolic links
-    if (problem) return unreadable(shown + "which can't be found; copy it next to the scene.");
+    if (problem) return unreadable(fmt::format("{}which can't be found; copy it next to the scene.", shown));
     if (std::mismatch(base.begin(), base.end(), target.begin(), target.end()).first != base.end())
         return bad(fmt::format("{}a link that leads out of the folder{}", shown, remedy));
     return readRegularFile(target, what);

@@ -104,8 +104,9 @@ private:
     {
         if (view >= seen.size()) return bad(fmt::format("{} uses buffer view {} of {}; export the file again.", owner, view, seen.size()));
         if (seen[view].bytes == kNoData)
-            return bad(owner + " holds compressed data (meshopt) without an uncompressed fallback, which isn't supported; "
-                               "export the file without mesh compression.");
+            return bad(fmt::format("{} holds compressed data (meshopt) without an uncompressed fallback, which isn't supported; "
+                                   "export the file without mesh compression.",
+                                   owner));
         const uint64_t stride = strided && seen[view].stride != 0 ? seen[view].stride : size;
         if (stride < size)
             return bad(fmt::format("{} has elements of {} bytes, more than the stride of {} of its buffer view; export the file again.",
@@ -127,7 +128,7 @@ private:
         const uint64_t component = componentBytes(*type), components = typeComponents(entry);
         if (component == 0)
             return bad(fmt::format("{} has component type {}, which glTF 2.0 doesn't have; export the file again.", owner, *type));
-        if (components == 0) return bad(owner + " has an unknown type; glTF 2.0 has SCALAR, VEC2 to VEC4 and MAT2 to MAT4.");
+        if (components == 0) return bad(fmt::format("{} has an unknown type; glTF 2.0 has SCALAR, VEC2 to VEC4 and MAT2 to MAT4.", owner));
         if (*count > 0xffffffffull) return bad(fmt::format("{} has {} elements; the limit is 2^32 - 1, split the mesh.", owner, *count));
         if (entry.contains("bufferView"))
         {
@@ -135,14 +136,15 @@ private:
             if (!view) return view.error();
             if (Status status = fits(*view, *offset, *count, component * components, true, owner); !status) return status;
         }
-        return entry.contains("sparse") ? sparse(entry["sparse"], *count, component * components, owner + " (sparse)") : success();
+        return entry.contains("sparse") ? sparse(entry["sparse"], *count, component * components, fmt::format("{} (sparse)", owner))
+                                        : success();
     }
 
     Status sparse(const Json& entry, uint64_t elements, uint64_t size, const std::string& owner) const
     {
         if (!entry.is_object() || !entry.contains("indices") || !entry.contains("values") || !entry["indices"].is_object() ||
             !entry["values"].is_object())
-            return bad(owner + " lacks indices or values; the file is damaged, export it again.");
+            return bad(fmt::format("{} lacks indices or values; the file is damaged, export it again.", owner));
         const uint64_t zero = 0;
         const Json &indices = entry["indices"], &values = entry["values"];
         const auto count = number(entry, "count", owner, nullptr), type = number(indices, "componentType", owner, nullptr);

@@ -127,15 +127,16 @@ void addFindings(const Scene& scene, SceneReport& report)
         find("no-light", Severity::warning, "The scene has no light, emitter or sky; add one, or let the default sun and sky be added.");
     if (report.degenerateTriangles > 0)
         find("degenerate", Severity::warning,
-             count(report.degenerateTriangles, "triangle has", "triangles have") + " no area; remove them in the modeller.");
+             fmt::format("{} no area; remove them in the modeller.", count(report.degenerateTriangles, "triangle has", "triangles have")));
     if (report.duplicateTriangles > 0)
         find("duplicates", Severity::warning,
-             count(report.duplicateTriangles, "triangle lies", "triangles lie") +
-                 " exactly on another one, which flickers where their materials differ; remove one of each pair.");
+             fmt::format("{} exactly on another one, which flickers where their materials differ; remove one of each pair.",
+                         count(report.duplicateTriangles, "triangle lies", "triangles lie")));
     if (report.openEdges > 0)
         find("open-edges", report.openEdgeShare > 0.25 ? Severity::warning : Severity::info,
-             percent(report.openEdgeShare) + " of the edges have one triangle only, so inside and outside can't be told everywhere; "
-                                             "close the meshes, or name inner points when placing probes.");
+             fmt::format("{} of the edges have one triangle only, so inside and outside can't be told everywhere; "
+                         "close the meshes, or name inner points when placing probes.",
+                         percent(report.openEdgeShare)));
     if (report.triangles > 0 && report.bounds.diagonal() < 0.05f)
         find("tiny", Severity::warning, "The scene is less than 5 cm across; glTF is in metres, check the export scale.");
     if (report.bounds.diagonal() > 5000.0f)
@@ -168,16 +169,17 @@ void addEffects(const Scene& scene, float raysBelow, SceneReport& report)
     uint64_t diffuse = 0;
     for (const uint32_t material : scene.triangleMaterial)
         diffuse += scene.materials[material].metallic < 1.0f && vec3(scene.materials[material].baseColor) != vec3(0.0f);
-    add("diffuse", diffuse > 0, count(diffuse, "triangle reflects", "triangles reflect") + " diffusely.",
+    add("diffuse", diffuse > 0, fmt::format("{} diffusely.", count(diffuse, "triangle reflects", "triangles reflect")),
         "No triangle reflects diffusely.");
     add("rough", report.roughMaterials > 0, materials(report.roughMaterials, read), std::string("No material has") + read);
     add("glossy", report.glossyMaterials > 0, materials(report.glossyMaterials, traced), std::string("No material has") + traced);
     add("mirror", report.mirrorMaterials > 0, materials(report.mirrorMaterials, " a roughness below 0.02."),
         "No material has a roughness below 0.02.");
-    add("masked", report.maskedMaterials > 0, count(report.maskedMaterials, "material is", "materials are") + " cut out by alpha.",
+    add("masked", report.maskedMaterials > 0,
+        fmt::format("{} cut out by alpha.", count(report.maskedMaterials, "material is", "materials are")),
         "No material is cut out by alpha.");
     add("thin-two-sided", report.openEdges > 0,
-        count(report.openEdges, "edge borders", "edges border") + " on one triangle only: sheets seen from both sides.",
+        fmt::format("{} on one triangle only: sheets seen from both sides.", count(report.openEdges, "edge borders", "edges border")),
         "Every edge has two triangles or more: all meshes are closed.");
 }
 

@@ -185,7 +185,7 @@ Result<dmat4> localTransform(const tg::Node& node, const std::string& owner)
 {
     const auto sized = [](const std::vector<double>& list, size_t count) { return list.empty() || list.size() == count; };
     if (!sized(node.matrix, 16) || !sized(node.translation, 3) || !sized(node.rotation, 4) || !sized(node.scale, 3))
-        return bad(owner + " has a transform with a wrong number of values; export the file again.");
+        return bad(fmt::format("{} has a transform with a wrong number of values; export the file again.", owner));
     dmat4 local(1.0);
     if (!node.matrix.empty())
     {
@@ -196,7 +196,7 @@ Result<dmat4> localTransform(const tg::Node& node, const std::string& owner)
     if (!node.rotation.empty())
     {
         const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-        if (!(glm::length(q) > 0.0)) return bad(owner + " has a rotation of length 0; give a unit quaternion.");
+        if (!(glm::length(q) > 0.0)) return bad(fmt::format("{} has a rotation of length 0; give a unit quaternion.", owner));
         local *= glm::mat4_cast(glm::normalize(q));
     }
     if (!node.scale.empty()) local = glm::scale(local, dvec3(node.scale[0], node.scale[1], node.scale[2]));
@@ -221,7 +221,7 @@ Status Importer::collect()
     else
     {
         const int chosen = model.defaultScene < 0 ? 0 : model.defaultScene;
-        if (!has(model.scenes, chosen)) return bad("The file's default is scene " + outside("", chosen, model.scenes));
+        if (!has(model.scenes, chosen)) return bad(fmt::format("The file's default is scene {}", outside("", chosen, model.scenes)));
         roots = model.scenes[size_t(chosen)].nodes;
     }
     // A stack of its own: 1024 levels of calls would not fit the small stacks that threads may have.
@@ -240,12 +240,13 @@ Status Importer::collect()
 Status Importer::visit(const Visit& next, std::vector<Visit>& pending)
 {
     const int index = next.node;
-    if (!has(model.nodes, index)) return bad("The scene uses " + outside("node", index, model.nodes));
+    if (!has(model.nodes, index)) return bad(fmt::format("The scene uses {}", outside("node", index, model.nodes)));
     const std::string owner = fmt::format("Node {}", index);
     if (next.depth > GltfLimits::nodeDepth)
         return bad(fmt::format("{} lies more than {} levels deep; flatten the hierarchy.", owner, GltfLimits::nodeDepth));
     // glTF 2.0 asks for trees. Besides cycles this stops the doubling of a node at every level by two parents.
-    if (visited[size_t(index)]) return bad(owner + " is reached twice: it has two parents or is part of a cycle; export the file again.");
+    if (visited[size_t(index)])
+        return bad(fmt::format("{} is reached twice: it has two parents or is part of a cycle; export the file again.", owner));
     visited[size_t(index)] = true;
     const tg::Node& node = model.nodes[size_t(index)];
     const auto local = localTransform(node, owner);
@@ -281,14 +282,15 @@ Status Importer::addInstances(const tg::Node& node, int index, const dmat4& worl
     for (int i = 0; i < 3; ++i)
     {
         if (!attributes.Has(names[i])) continue;
-        auto part = view(indexOr(attributes, names[i], -2), i == 1 ? 4 : 3, owner + " (instancing)");
+        auto part = view(indexOr(attributes, names[i], -2), i == 1 ? 4 : 3, fmt::format("{} (instancing)", owner));
         if (!part) return part.error();
-        if (count && *count != part->count) return bad(owner + " has instance attributes of different length; export the file again.");
+        if (count && *count != part->count)
+            return bad(fmt::format("{} has instance attributes of different length; export the file again.", owner));
         count = part->count;
         parts[i] = std::move(*part);
     }
     if (instances.size() + count.value_or(1) > kMaxInstances)
-        return bad(owner + " brings the scene above 10 million instances; use fewer.");
+        return bad(fmt::format("{} brings the scene above 10 million instances; use fewer.", owner));
     for (size_t i = 0; i < count.value_or(1); ++i)
     {
         dmat4 local(1.0);
@@ -296,7 +298,8 @@ Status Importer::addInstances(const tg::Node& node, int index, const dmat4& worl
         if (parts[1])
         {
             const glm::dquat q(parts[1]->component(i, 3), parts[1]->component(i, 0), parts[1]->component(i, 1), parts[1]->component(i, 2));
-            if (!(glm::length(q) > 0.0)) return bad(owner + " has an instance with a rotation of length 0; give unit quaternions.");
+            if (!(glm::length(q) > 0.0))
+                return bad(fmt::format("{} has an instance with a rotation of length 0; give unit quaternions.", owner));
             local *= glm::mat4_cast(glm::normalize(q));
         }
         if (parts[2]) local = glm::scale(local, parts[2]->vec3At(i));
@@ -448,7 +451,7 @@ Result<std::vector<uint32_t>> Importer::indicesOf(const tg::Primitive& primitive
     const bool isUnsigned = from->componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                             from->componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                             from->componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (!isUnsigned) return bad(owner + " has indices that are not unsigned integers; export the file again.");
+    if (!isUnsigned) return bad(fmt::format("{} has indices that are not unsigned integers; export the file again.", owner));
     AccessorView plain = *from;
     plain.normalized = false;
     indices.resize(plain.count);
@@ -572,7 +575,7 @@ Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& o
 Result<uint32_t> Importer::materialOf(int index)
 {
     if (const auto known = materials.find(index); known != materials.end()) return known->second;
-    if (index != -1 && !has(model.materials, index)) return bad("A mesh uses " + outside("material", index, model.materials));
+    if (index != -1 && !has(model.materials, index)) return bad(fmt::format("A mesh uses {}", outside("material", index, model.materials)));
     static const tg::Material standard; // glTF 2.0 section 3.9.6: no material means the defaults, a white rough metal
     const tg::Material& source = index == -1 ? standard : model.materials[size_t(index)];
     const tg::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
@@ -621,7 +624,7 @@ Result<uint32_t> Importer::materialOf(int index)
 Status Importer::readTexture(const tg::ExtensionMap& extensions, int index, int texCoord, TextureRef& out, int& uvSet)
 {
     if (index == -1) return success();
-    if (!has(model.textures, index)) return bad("A material uses " + outside("texture", index, model.textures));
+    if (!has(model.textures, index)) return bad(fmt::format("A material uses {}", outside("texture", index, model.textures)));
     const tg::Texture& texture = model.textures[size_t(index)];
     int source = texture.source;
     if (const auto webp = texture.extensions.find("EXT_texture_webp"); webp != texture.extensions.end())
@@ -668,7 +671,7 @@ Status Importer::readTexture(const tg::ExtensionMap& extensions, int index, int 
 Result<int> Importer::imageOf(int source)
 {
     if (const auto known = images.find(source); known != images.end()) return known->second;
-    if (!has(guarded.images, source)) return bad("A texture uses " + outside("image", source, guarded.images));
+    if (!has(guarded.images, source)) return bad(fmt::format("A texture uses {}", outside("image", source, guarded.images)));
     const GltfImage& entry = guarded.images[size_t(source)];
     std::vector<uint8_t> file;
     std::span<const uint8_t> bytes;

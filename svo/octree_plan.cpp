@@ -130,7 +130,7 @@ std::string argumentFault(const ProbeMaps& maps, const OctreeSettings& settings)
         return fmt::format("{} probes are more than the {} an octree can index; place fewer", maps.probes.size(), kMostProbes);
     if (const std::string fault = firstFault({faultOf(knobs::octreeVoxels, settings.voxels), faultOf(knobs::topShift, settings.topShift)});
         !fault.empty())
-        return "octree settings: " + fault;
+        return fmt::format("octree settings: {}", fault);
     if (maps.info.chart != gpu::kChartCube) return "the octree judges visibility by cube-face maps; bake with the cube chart";
     return {};
 }

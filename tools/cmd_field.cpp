@@ -52,7 +52,7 @@ int runVerify(const FileOptions& options, const Context& context)
     else
         for (const BlockReport& block : report->blocks)
             std::cout << (block.problem.empty() ? "ok       " : "DAMAGED  ") << block.name << "  " << block.storedBytes << " bytes"
-                      << (block.problem.empty() ? "" : ": " + block.problem) << std::endl;
+                      << (block.problem.empty() ? "" : fmt::format(": {}", block.problem)) << std::endl;
     if (report->ok()) return exitOk;
     return fail(ErrorCode::badInput, !report->problem.empty()
                                          ? report->problem

@@ -93,7 +93,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     PlaceReport report;
     Result<ProbeSet> set = placeProbes(*scene, settings, report, consoleProgress(context));
     if (!set) return fail(set.error());
-    for (const std::string& warning : report.warnings) note(context, "Note: " + warning);
+    for (const std::string& warning : report.warnings) note(context, fmt::format("Note: {}", warning));
     if (set->scene.empty()) set->scene = scene->name;
     if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());
 
@@ -156,7 +156,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
                 settings.method = PlaceSettings::Method::grid;
             },
             described("Probes along each axis of the grid; implies --method grid", words("chosen from --count"),
-                      "in all " + rangeText(knobs::count)))
+                      fmt::format("in all {}", rangeText(knobs::count))))
         ->type_name("NxNxN");
     CLI::Option* count = addKnob(command, "--count", settings.count, knobs::count);
     // A budget is a count said in bytes: given both, one would have to be ignored.

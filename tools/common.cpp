@@ -166,7 +166,7 @@ Progress consoleProgress(const Context& context)
         const double elapsed = time - state->stageStart;
         std::string text = fmt::format("{} %", int(100.0 * done));
         if (done >= 1.0)
-            text += ", took " + minutes(elapsed);
+            text += fmt::format(", took {}", minutes(elapsed));
         else if (done > 0.02 && elapsed > 1.0)
             text += fmt::format(", {} left", minutes(elapsed * (1.0 - done) / done));
         if (terminal)
@@ -333,7 +333,7 @@ Result<Scene> SceneOptions::load(const Context& context) const
     Result<Scene> scene = builtin ? makeBuiltinScene(name) : loadGltf(path, consoleProgress(context));
     endProgress();
     if (!scene) return scene;
-    for (const std::string& warning : scene->warnings) note(context, "Note: " + warning);
+    for (const std::string& warning : scene->warnings) note(context, fmt::format("Note: {}", warning));
     if (sunDirection)
     {
         std::erase_if(scene->lights, [](const Light& light) { return light.type == LightType::directional; });

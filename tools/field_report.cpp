@@ -71,10 +71,9 @@ void printField(const FieldData& field, const std::string& file)
     const FieldBytes bytes = bytesByPart(field);
     std::cout << file << ": scene " << field.sceneName << ", " << info.probeCount << " probes, chart " << chartName(info.chart) << ", "
               << (info.chart == gpu::kChartCube ? "faces of " : "maps of ") << info.faceSize << " texels, " << field.bounces << " bounces\n"
-              << "bytes: " << megabytes(bytes.total()) << " = distance " << megabytes(bytes.distance) << " + normals "
-              << megabytes(bytes.normals) << " + radiance " << megabytes(bytes.radiance) << " + prefiltered "
-              << megabytes(bytes.prefiltered) << " + irradiance " << megabytes(bytes.irradiance) << " + index " << megabytes(bytes.index)
-              << "\n"
+              << fmt::format("bytes: {} = distance {} + normals {} + radiance {} + prefiltered {} + irradiance {} + index {}\n",
+                             megabytes(bytes.total()), megabytes(bytes.distance), megabytes(bytes.normals), megabytes(bytes.radiance),
+                             megabytes(bytes.prefiltered), megabytes(bytes.irradiance), megabytes(bytes.index))
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
               << ", voxels of " << field.octree.voxel * info.scale << " m\n"
               << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"

@@ -7,7 +7,7 @@ namespace sconce::tools
 
 std::string described(std::string_view what, const std::string& byDefault, const std::string& range)
 {
-    return fmt::format("{} (default: {}{})", what, byDefault, range.empty() ? "" : "; range: " + range);
+    return fmt::format("{} (default: {}{})", what, byDefault, range.empty() ? "" : fmt::format("; range: {}", range));
 }
 
 std::string described(std::string_view what, Words byDefault, const std::string& range)

@@ -24,7 +24,8 @@ void PictureOptions::add(CLI::App* command, const std::vector<std::string>& laye
 {
     command->add_option("-o,--output", output, "EXR to write, 32-bit float, linear radiance (required)")->required()->type_name("FILE");
     command
-        ->add_option("--aov", aov, described("Layers to write, separated by commas, of " + joined(layers), words("all that are at hand")))
+        ->add_option("--aov", aov,
+                     described(fmt::format("Layers to write, separated by commas, of {}", joined(layers)), words("all that are at hand")))
         ->type_name("LIST");
     command->add_option("--png", png, described("Also writes the beauty layer as it looks: exposure, ACES tone map, sRGB", words("none")))
         ->type_name("FILE");

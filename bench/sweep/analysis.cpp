@@ -60,7 +60,7 @@ std::string figure(double value)
 
 std::string times(double ratio)
 {
-    return figure(ratio) + " times";
+    return fmt::format("{} times", figure(ratio));
 }
 
 std::string percent(double share)
@@ -223,7 +223,7 @@ private:
                 costKey);
         }
         else
-            add(what, key, opponent, nullptr, their, Json::object(), as + "Sconce has no setting.", costKey);
+            add(what, key, opponent, nullptr, their, Json::object(), fmt::format("{}Sconce has no setting.", as), costKey);
     }
 
     Points ours;
@@ -246,7 +246,7 @@ Json pricesOf(const Points& ours, const Json& base)
             const std::optional<double> memory = halvingCost(error, ratios["memory"].is_number() ? ratios["memory"].get<double>() : 0.0);
             std::string sentence = fmt::format("{} {}: {} {}", (*point)["knob"].get<std::string>(), (*point)["value"].get<std::string>(),
                                                times(error), nameOfKey(key));
-            if (const std::string rest = ratioText(ratios, "error"); !rest.empty()) sentence += ", " + rest;
+            if (const std::string rest = ratioText(ratios, "error"); !rest.empty()) sentence += fmt::format(", {}", rest);
             if (halving) sentence.append("; at this rate, halving the error costs ").append(times(*halving)).append(" the time");
             if (halving && memory) sentence.append(" and ").append(times(*memory)).append(" the memory");
             prices.push_back({{"knob", (*point)["knob"]},
@@ -260,7 +260,7 @@ Json pricesOf(const Points& ours, const Json& base)
                               {"memory_ratio", ratios["memory"]},
                               {"halving_costs_time", halving ? Json(*halving) : Json(nullptr)},
                               {"halving_costs_memory", memory ? Json(*memory) : Json(nullptr)},
-                              {"sentence", sentence + "."}});
+                              {"sentence", fmt::format("{}.", sentence)}});
         }
     }
     return prices;

@@ -79,7 +79,7 @@ std::vector<std::string> worsened(const Json& guard, const Json& scene, const st
             if (point["id"] == id) now = &point;
         if (!now)
         {
-            sentences.push_back(where + "not measured; the baseline has it.");
+            sentences.push_back(fmt::format("{}not measured; the baseline has it.", where));
             continue;
         }
         if (now->contains("wrong") && (*now)["wrong"].is_string()) sentences.push_back(where + (*now)["wrong"].get<std::string>());

@@ -281,7 +281,7 @@ Status SceneBench::prepare()
     auto set = sceneRays(desc.scene, *truth, desc.settings.rays, desc.settings.seed);
     if (!set) return set.error();
     rays = std::move(*set);
-    return saveRays(*rays, desc.folder / "replay" / (desc.name + ".rays"));
+    return saveRays(*rays, desc.folder / "replay" / fmt::format("{}.rays", desc.name));
 }
 
 /// The scene as frames of a kind need it; made once.

@@ -118,7 +118,7 @@ private:
         return [this, weight](std::string_view, double share)
         {
             shown = std::max(shown, std::min((done + weight * share) / whole, 1.0));
-            return report(progress, "bench " + bench.name(), shown);
+            return report(progress, fmt::format("bench {}", bench.name()), shown);
         };
     }
 
@@ -165,7 +165,7 @@ private:
                                   {"knob", plan[i].knob},
                                   {"value", plan[i].value},
                                   {"settings", settingsJson(plan[i].settings)},
-                                  {"wrong", "Not measured: " + measured.error().message}};
+                                  {"wrong", fmt::format("Not measured: {}", measured.error().message)}};
                 say(fmt::format("{}: not measured: {}", plan[i].id, measured.error().message));
                 if (auto status = publish(); !status) return status.error(); // not kept: tried again in a later run
                 continue;
@@ -273,7 +273,7 @@ std::string describePoint(const Json& point)
     const Json& error = point["error"];
     const auto figure = [](const Json& value)
     { return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN(); };
-    std::string line = point["id"].get<std::string>() + ":";
+    std::string line = fmt::format("{}:", point["id"].get<std::string>());
     if (point.contains("rays"))
     {
         const Json& rays = point["rays"];

@@ -240,7 +240,8 @@ void BakeSettings::take(const EffectPlan& plan, bool tracedDiffuse)
 Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                  const Progress& progress, BakeReport& bakeReport)
 {
-    if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
+    if (const std::string fault = argumentFault(probes, settings); !fault.empty())
+        return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
     if (scene.triangles.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
     Bake bake{{}, {}, {}, {}, {}, progress};

@@ -23,7 +23,7 @@ std::string checkQuality(const gpu::TraceQuality& q)
         firstFault({faultOf(knobs::ranked, q.ranked), faultOf(knobs::maxHandoffs, q.maxHandoffs), faultOf(knobs::startLevel, q.startLevel),
                     faultOf(knobs::coarsestLevel, q.coarsestLevel), faultOf(knobs::tolerance, q.tolerance),
                     faultOf(knobs::epsilon, q.epsilon), faultOf(knobs::opinion, q.opinion), faultOf(knobs::farBounds, q.farBounds)});
-    return fault.empty() ? fault : "quality: " + fault;
+    return fault.empty() ? fault : fmt::format("quality: {}", fault);
 }
 
 Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)

@@ -358,15 +358,15 @@ std::string tableProblem(const Table& table, uint64_t fileBytes)
     {
         // Sections in order and without gaps: no byte of the file is left that no checksum covers.
         const std::string name = fmt::format("block '{}'", blockName(block));
-        if (block.section >= sectionCount || block.section < section) return name + " is not where it belongs";
+        if (block.section >= sectionCount || block.section < section) return fmt::format("{} is not where it belongs", name);
         chunk = block.section == section ? chunk : 0;
         section = block.section;
-        if (block.chunk != chunk++) return name + " is out of sequence";
-        if (block.offset != at || block.storedBytes > fileBytes - at) return name + " lies outside the file";
-        if (block.codec != Codec::raw && block.codec != Codec::zstd) return name + " has an unknown codec";
-        if (block.rawBytes > kChunkBytes || block.reserved != 0) return name + " has an impossible size";
+        if (block.chunk != chunk++) return fmt::format("{} is out of sequence", name);
+        if (block.offset != at || block.storedBytes > fileBytes - at) return fmt::format("{} lies outside the file", name);
+        if (block.codec != Codec::raw && block.codec != Codec::zstd) return fmt::format("{} has an unknown codec", name);
+        if (block.rawBytes > kChunkBytes || block.reserved != 0) return fmt::format("{} has an impossible size", name);
         if (block.codec == Codec::raw ? block.rawBytes != block.storedBytes : block.rawBytes / kZstdMaxRatio > block.storedBytes)
-            return name + " has sizes that contradict each other";
+            return fmt::format("{} has sizes that contradict each other", name);
         at += block.storedBytes;
     }
     return at + sizeof(Footer) == fileBytes ? "" : "its blocks do not end where the file ends";
