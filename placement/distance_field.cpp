@@ -125,6 +125,7 @@ DistanceField buildDistanceField(const Scene& scene, const std::vector<Presence>
         for (int corner = 0; corner < 3; ++corner) around.add(scene.positions[scene.triangles[triangle][corner]]);
         const uvec3 corners = scene.triangles[triangle];
         const vec3 a = scene.positions[corners.x];
+        // Of no area: no surface of its own, and its edges are its neighbours'.
         const bool flat = glm::cross(scene.positions[corners.y] - a, scene.positions[corners.z] - a) == vec3(0.0f);
         const bool apart =
             glm::any(glm::greaterThan(around.low, box.high + margin)) || glm::any(glm::lessThan(around.high, box.low - margin));

@@ -28,6 +28,8 @@ constexpr double kGapShare = 0.25;
 constexpr size_t kDraws = 8;      // samples drawn for each one that is kept
 constexpr double kRayShare = 0.8; // of the surfels where rays hit; the rest evenly by area
 constexpr float kComfort = 0.09f; // of the probes' spacing, metres from surfaces
+// A pass of exchange reads candidates x surfels x probes bytes: beyond this many probes the greedy choice stands.
+constexpr size_t kMostExchanged = 600;
 constexpr size_t kTableBytes = size_t(400) << 20;
 static_assert(knobs::count.most == kMostProbes);
 static_assert(knobs::method.is(knobs::kMethods[size_t(PlaceSettings::Method::sdf)]) && // the enums are in the choices' order
@@ -206,6 +208,8 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
     const float comfort = std::max(clearance, kComfort * probeSpacing(space, count ? count : knobs::kGridCount));
     report.comfort = comfort;
+    // Of both kinds: ridges are few and see far, spread ones are wherever ridges of small cells are missing. A seed of its own for each
+    // step: no two draw the same places.
     if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
     const double planned = std::max(double(settings.candidates), 3.5 * double(count)); // many probes need many candidates
     const size_t onSkeleton = size_t(planned * kRidgeShare);
@@ -259,8 +263,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     const auto choose = [&](float target)
     {
         chosen = chooseGreedily(table, count, target, pinned);
-        // A pass costs candidates x surfels x probes bytes; beyond this many probes the greedy choice stands.
-        if (count && chosen.size() <= 600) improveByExchange(table, chosen, 2, pinned);
+        if (count && chosen.size() <= kMostExchanged) improveByExchange(table, chosen, 2, pinned);
         if (!count) pruneNeedless(table, chosen, pinned);
     };
     if (!sconce::report(progress, "choice", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
@@ -285,6 +288,7 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
                                                           settings.coverage, chosen.size(), kMostProbes)};
     }
 
+    // From here on probes are positions: what follows moves them to where no candidate is.
     std::vector<vec3> positions = positionsOf(candidates, chosen);
     std::vector<Candidate::Origin> origins;
     for (uint32_t candidate : chosen) origins.push_back(candidates[candidate].origin);

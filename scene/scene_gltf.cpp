@@ -489,6 +489,7 @@ std::vector<uvec3> trianglesOf(int mode, const std::vector<uint32_t>& corners)
 
 Status Importer::buildPiece(const tg::Primitive& primitive, const std::string& owner, std::vector<Piece>& out)
 {
+    // Left out with a note rather than refused: the rest of the scene is as good without it.
     const int mode = primitive.mode;
     if (mode == TINYGLTF_MODE_POINTS || mode == TINYGLTF_MODE_LINE || mode == TINYGLTF_MODE_LINE_LOOP || mode == TINYGLTF_MODE_LINE_STRIP)
     {

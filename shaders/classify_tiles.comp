@@ -22,7 +22,7 @@ void main()
 {
     if (gl_LocalInvocationIndex == 0u) tileTerms = 0u;
     if (gl_LocalInvocationIndex < kTileSide) rowTerms[gl_LocalInvocationIndex] = 0u;
-    barrier();
+    barrier(); // no term may be set before all are cleared
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (all(lessThan(at, ivec2(frame.size))))
     {
@@ -33,7 +33,7 @@ void main()
             atomicOr(rowTerms[gl_LocalInvocationID.y], terms << (kTermCount * gl_LocalInvocationID.x));
         }
     }
-    barrier();
+    barrier(); // a tile's terms are those of all its pixels
     uint list = gl_LocalInvocationIndex, all = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
     if (list < kTileSide) tiles[kListCount * all + kTileSide * (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) + list] = rowTerms[list];
     uint wanted = list == kListGathered ? (1u << kTermDiffuse) | (1u << kTermRough) : 1u << list;

@@ -16,12 +16,12 @@ void main()
     ivec3 block = ivec3(number % blocks.x, number / blocks.x % blocks.y, number / blocks.x / blocks.y);
     uint thread = gl_LocalInvocationIndex;
     if (thread < kMostCandidates / 32u) mayBits[thread] = 0u;
-    barrier();
+    barrier(); // no bit may be set before all are cleared
     uint list = regionOf(kBlock * block) * build.candidates;
     uint threads = uint(kBlock * kBlock * kBlock);
     for (uint i = thread; i < build.candidates; i += threads)
         if (mayBeSeen(push.settings.inputs.candidates.candidate[list + i].x, block)) atomicOr(mayBits[i / 32u], 1u << (i % 32u));
-    barrier();
+    barrier(); // a place in the list counts the bits of all candidates before it
     for (uint i = thread; i < build.candidates; i += threads)
     {
         uint place = bitCount(mayBits[i / 32u] & ((1u << (i % 32u)) - 1u));
@@ -30,7 +30,7 @@ void main()
         if (keeps) kept[place] = push.settings.inputs.candidates.candidate[list + i];
         if (i + 1u == build.candidates) keptCount = place + uint(keeps);
     }
-    barrier();
+    barrier(); // every voxel ranks the whole list
     ivec3 voxel = kBlock * block + ivec3(gl_LocalInvocationID);
     if (all(lessThan(voxel, build.count))) push.to.list[indexIn(voxel, build.count)] = rankVoxel(voxel);
 }

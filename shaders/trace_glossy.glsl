@@ -59,7 +59,7 @@ void trace(ivec2 at, Pixel p, uint terms)
 void traceChosen()
 {
     if (gl_LocalInvocationIndex == 0u) chosenCount = 0u;
-    barrier();
+    barrier(); // no pixel may be counted before the count is cleared
     uint first = workgroupIndex() << kEveryLog, last = min(first + (1u << kEveryLog), tileCount(kTerm));
     for (uint tile = first; tile < last; ++tile)
     {
@@ -72,7 +72,7 @@ void traceChosen()
         else
             imageStore(reflected, at, vec4(0.0, 0.0, 0.0, kNotTraced));
     }
-    barrier();
+    barrier(); // the pixels are dealt out anew, so that all of them must be in the list
     for (uint i = gl_LocalInvocationIndex; i < chosenCount; i += 64u)
     {
         ivec2 at = ivec2(chosen[i] & 0xffffu, chosen[i] >> 16);

@@ -35,6 +35,7 @@ int runBake(const BakeOptions& options, const Context& context)
     if (!set) return fail(set.error());
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
+    // After the files, the likeliest to be wrong.
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device, .memoryBudget = options.memoryMb << 20});
     if (!device) return fail(device.error());
     BakeSettings settings = options.settings;
@@ -58,6 +59,7 @@ int runBake(const BakeOptions& options, const Context& context)
     // After the plan, which asks what the whole scene calls for; what it gives up must leave no light in the field.
     capScene(*scene, *plan);
     settings.take(*plan, frame.effects.tracedDiffuse);
+    // The bake knows positions alone: how a probe came to be where it is makes no difference to its light.
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
     BakeReport report;

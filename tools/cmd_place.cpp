@@ -73,6 +73,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
         if (!count) return fail(count.error());
         settings.count = *count;
     }
+    // Pins before the scene, which takes longer to read than they take to be refused.
     if (!options.pins.empty())
     {
         Result<std::vector<Pin>> pins = loadPins(options.pins);
@@ -102,6 +103,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
         if (Status status = writePng(report.picture.rgb, report.picture.width, report.picture.height, options.explain); !status)
             return fail(status.error());
 
+    // What a script judges the placement by; the lines for people are the part of it that tells whether to place anew.
     Json json;
     json["probes"] = set->probes.size();
     json["method"] = set->method;

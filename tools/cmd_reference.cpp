@@ -94,6 +94,7 @@ int runCompare(const CompareOptions& options, const Context& context)
         limits.emplace_back(parts[0], value->front());
     }
 
+    // Read last: a wrong metric or limit costs no waiting.
     const Result<ImageSet> picture = readExr(options.picture);
     if (!picture) return fail(picture.error());
     const Result<ImageSet> reference = readExr(options.reference);

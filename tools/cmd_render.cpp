@@ -181,6 +181,7 @@ int runRender(RenderOptions options, const Context& context)
                                       "with the same --effects.",
                                       effect.name));
 
+    // After everything that can be refused without a device, which takes longer to start than all of that together.
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
     if (!device) return fail(device.error());
     Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
@@ -226,6 +227,7 @@ int runRender(RenderOptions options, const Context& context)
         // With --temporal each frame draws rays of its own for the history to average; without, all are the same picture, timed again.
         frame = (*renderer)->render(*camera, options.temporal ? i : 0);
         if (!frame) return fail(frame.error());
+        // The sum of the passes, not the wall clock: what the host does between them is not the frame's.
         double sum = 0.0;
         for (const GpuTimer::Scope& scope : frame->times)
         {
@@ -237,6 +239,7 @@ int runRender(RenderOptions options, const Context& context)
     }
     progress("render", 1.0);
 
+    // All that the picture depends on, so that it can be drawn again from what stands beside it.
     Json json;
     json["device"] = device->name();
     json["tracer"] = options.tracer;

@@ -244,6 +244,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
     if (scene.triangles.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
+    // The field's space before all else: probes, scene and octree are on the device in its units.
     Bake bake{{}, {}, {}, {}, {}, progress};
     BakeReport spent;
     Stopwatch watch;

@@ -92,6 +92,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
                           {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding},
                           {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
                           {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding}};
+    // All or none: one way of reading is compiled into each shader.
     made.byTexels =
         access == WordAccess::texelBuffers &&
         std::ranges::all_of(parts, [&](const Part& part) { return part.words.size() <= gpu.properties.limits.maxTexelBufferElements; });
@@ -125,6 +126,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.octree = std::move(*octree);
     made.bytes += made.probes.size() + made.patches.size() + made.block.size() + field.octree.bytes();
 
+    // Every binding whatever the field holds, so that one layout, and with it one pipeline, fits all fields.
     const DescriptorSet::Binding bindings[] = {{gpu::kFieldBlockBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                                                {gpu::kFieldProbesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldOctreeBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},

@@ -161,6 +161,8 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     if (!lightBuffer) return lightBuffer.error();
     made.lightBuffer = std::move(*lightBuffer);
 
+    // Smooth for suns and lamps, each of which has one map, whose texels would show as steps; nearest for sky and emitters, where many
+    // samples share the light and their steps average out.
     VkSamplerCreateInfo compare = samplerInfo(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
     compare.compareEnable = VK_TRUE;
     compare.compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL; // lit where nothing in the map is nearer
@@ -175,6 +177,7 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     if (!sampler) return sampler.error();
     made.textureSampler = std::move(*sampler);
 
+    // One set for every pass that shades, the bake's and the frame's: each shader names of it what it reads.
     std::vector<DescriptorSet::Binding> bindings = {{gpu::kMaterialsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                                                     {gpu::kLightsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (uint32_t textures : {gpu::kColorTexturesBinding, gpu::kDataTexturesBinding, gpu::kSunShadowsBinding, gpu::kSkyShadowsBinding,
@@ -208,6 +211,7 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
         const Sampler& sampler;
         const char* what;
     };
+    // 16 bits for the sky: it has the most maps by far, and their step of 1.5e-5 is below the bias of 5e-5 by which they are looked up.
     const Kind kinds[] = {{sunMaps, sizes.sunShadow, lightList.sunLayers, gpu::kSunShadowsBinding, VK_FORMAT_D32_SFLOAT, smoothCompare,
                            "The suns' shadow maps"},
                           {skyMaps, sizes.skyShadow, lightList.skyLayers, gpu::kSkyShadowsBinding, VK_FORMAT_D16_UNORM, nearestCompare,

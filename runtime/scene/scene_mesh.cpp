@@ -41,6 +41,7 @@ Result<SceneMesh> SceneMesh::create(Gpu& gpu, const Scene& scene, const gpu::Lig
 {
     SceneMesh mesh;
     mesh.gpu = &gpu;
+    // In the field's units once, here, rather than in every shader that meets a vertex.
     std::vector<vec3> positions(scene.positions.size());
     for (size_t i = 0; i < positions.size(); ++i) positions[i] = (scene.positions[i] - space.origin) / space.scale;
 

@@ -132,6 +132,7 @@ Status SceneRenderer::make()
     // Once: the images of the G-buffer stay the same in all frames.
     indirect->setInputs(gBuffer);
 
+    // In the order of the fragment shader's outputs.
     const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
     // Below 0: surfaces keep their own. A specialization constant is 32 bits of any type, here a float's.
@@ -151,6 +152,7 @@ Status SceneRenderer::make()
     if (!pipeline) return pipeline.error();
     gBufferPass = std::move(*pipeline);
 
+    // Without the field's set: direct light is of lights and their shadow maps alone, whatever the probes know.
     const DescriptorSet::Binding directBindings[] = {{gpu::kDirectEmissionBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                      {gpu::kDirectNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                      {gpu::kDirectLightBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};

@@ -183,6 +183,7 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
             auto staging = gpu.makeBuffer(chains[i].size(), 0, MemoryUse::upload, "A texture's staging buffer");
             if (!staging) return staging.error();
             std::memcpy(staging->mapped(), chains[i].data(), chains[i].size());
+            // All mips in one copy, one behind the other as mipChain() gives them.
             std::vector<VkBufferImageCopy> copies;
             VkDeviceSize offset = 0;
             for (uint32_t mip = 0; mip < desc.mips; ++mip)

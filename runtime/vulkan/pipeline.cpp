@@ -183,6 +183,7 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     depth.depthTestEnable = depth.depthWriteEnable = desc.depthFormat != VK_FORMAT_UNDEFINED;
     depth.depthCompareOp = desc.depthCompare;
     std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorFormats.size());
+    // Nothing is blended: transparency is by lot, and light is added by passes that read what was there.
     for (auto& blend : blends) blend.colorWriteMask = 0xf;
     VkPipelineColorBlendStateCreateInfo color{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     color.attachmentCount = uint32_t(blends.size());
