@@ -29,8 +29,8 @@ std::string knobText(double value)
     std::string shown = text;
     if (const size_t e = shown.find('e'); e != std::string::npos) // 1e-6, not 1e-06; 1e6, not 1e+06
     {
-        const size_t sign = e + 1, digit = shown.find_first_not_of("+-0", sign);
-        shown.replace(sign, digit - sign, shown[sign] == '-' ? "-" : "");
+        const size_t first = shown[e + 1] == '-' ? e + 2 : e + 1;
+        shown.erase(first, shown.find_first_not_of("+0", first) - first);
     }
     return shown;
 }
@@ -151,6 +151,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(groupMebibytes),
                                               rowOf(placement),
                                               rowOf(lowFactor),
+                                              rowOf(lookUpBias),
                                               rowOf(distanceBits),
                                               rowOf(tracedPaths),
                                               rowOf(timedRuns),

@@ -133,7 +133,7 @@ void addFindings(const Scene& scene, SceneReport& report)
              fmt::format("{} exactly on another one, which flickers where their materials differ; remove one of each pair.",
                          count(report.duplicateTriangles, "triangle lies", "triangles lie")));
     if (report.openEdges > 0)
-        find("open-edges", report.openEdgeShare > 0.25 ? Severity::warning : Severity::info,
+        find("open-edges", report.openEdgeShare > kMostOpenEdges ? Severity::warning : Severity::info,
              fmt::format("{} of the edges have one triangle only, so inside and outside can't be told everywhere; "
                          "close the meshes, or name inner points when placing probes.",
                          percent(report.openEdgeShare)));

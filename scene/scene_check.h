@@ -32,6 +32,9 @@ struct SceneEffect
     std::string why; // a sentence
 };
 
+/// Share of open edges beyond which inside and outside can't be told by winding.
+inline constexpr double kMostOpenEdges = 0.25;
+
 struct SceneReport
 {
     uint64_t triangles = 0, vertices = 0, materials = 0, textures = 0, textureBytes = 0;

@@ -1,5 +1,6 @@
 // Light that needs no ray, from the pixel's probes weighted by visibility: diffuse by their prefiltered irradiance, rough reflections by their
-// prefiltered radiance. Which probes, and their weights: candidatesAt() and nextCandidate(), which are included before.
+// prefiltered radiance. Which probes, their weights and what they hold: candidatesAt(), nextCandidate(), candidateLight() and blendedLight(), which
+// are defined before.
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kListId) const uint kList = kListGathered;
@@ -54,7 +55,7 @@ void main()
     while (nextCandidate(candidates, probe, say))
     {
         weights += say;
-        if (wantDiffuse && !kByPatches) arriving += say * probeIrradiance(probe, p.normal);
+        if (wantDiffuse && !kByPatches) arriving += say * candidateLight(probe, p.normal);
         if (wantRough) weigh(heaviest, probe, say);
         float share = say / weights;
         if (lot < share) drawn = probe, lot /= share;
@@ -63,7 +64,7 @@ void main()
     // One probe's patches, drawn by its say; the filter blends what neighbours drew.
     if (wantDiffuse && kByPatches && drawn != kNoProbe)
         arriving = weights * patchIrradiance(drawn, point - probeHeader(drawn).centre, p.normal);
-    if (wantDiffuse) imageStore(diffuse, at, vec4(arriving / weights, 1.0));
+    if (wantDiffuse) imageStore(diffuse, at, vec4(kByPatches ? arriving / weights : blendedLight(arriving / weights), 1.0));
     if (!wantRough) return;
 
     float met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there

@@ -54,12 +54,13 @@ struct Candidates
     Votes votes;
     vec3 point; // field space
     vec3 normal;
+    vec3 view;
 };
 
 /// @param tangents  of the pixel's normal
 Candidates candidatesAt(ivec2 at, Pixel p, vec3 point, TangentFrame tangents)
 {
-    Candidates found = Candidates(noVotes(), point, p.normal);
+    Candidates found = Candidates(noVotes(), point, p.normal, p.view);
     if (!canGather(point, p.normal)) return found;
     for (uint i = 0u; i < kLookUps; ++i)
     {
@@ -74,14 +75,12 @@ Candidates candidatesAt(ivec2 at, Pixel p, vec3 point, TangentFrame tangents)
     return found;
 }
 
-/// False: there is no more.
-bool nextCandidate(inout Candidates of, out uint probe, out float weight)
+/// The next probe, and how many look-ups name it. False: there is no more.
+bool nextNamed(inout Candidates of, out uint probe, out float times)
 {
-    weight = 0.0;
+    times = 0.0;
     probe = kNoProbe;
     if (!(of.votes.times[0].x > 0.0)) return false;
-    float times;
     probe = nextVoted(of.votes, times);
-    weight = times * weightOfProbe(probe, of.point, of.normal);
     return true;
 }

@@ -15,7 +15,7 @@ namespace
 
 constexpr std::string_view kErrors[] = {"glossy.relmse", "beauty.relmse", "beauty.flip", "diffuse.relmse", "wrong_rays"};
 constexpr std::string_view kCosts[] = {"frame_ms", "trace_ms", "reads", "bytes", "probes"};
-constexpr std::string_view kJudged[] = {"glossy.relmse", "beauty.relmse", "wrong_rays"}; // of the tables of equal things
+constexpr std::string_view kJudged[] = {"glossy.relmse", "beauty.relmse", "diffuse.relmse", "wrong_rays"}; // of the tables of equal things
 constexpr std::string_view kPriced[] = {"glossy.relmse", "wrong_rays"};
 constexpr double kChange = 0.02;   // an error that changes by less is the same
 constexpr double kBroken = 2.0;    // times our default's wrong rays or glossy error: where a knob breaks
@@ -40,6 +40,9 @@ std::string methodName(std::string_view method)
                                                                     {"b0plus", "B0+"},
                                                                     {"b0plus-octree", "B0+ with Sconce's probes and lists"},
                                                                     {"wang", "W'"},
+                                                                    {"ddgi", "DDGI"},
+                                                                    {"ddgi-placed", "DDGI on Sconce's probes"},
+                                                                    {"sh-grid", "a grid of spherical harmonics"},
                                                                     {kPathTracer, "the path tracer"},
                                                                     {"ours-grid", "Sconce's tracer on the uniform grid"}};
     const auto found = names.find(method);
@@ -183,8 +186,9 @@ private:
 
     void equalProbes(const std::string& opponent, const Json& their)
     {
-        const Json ratios = ratiosOf(*mine, their, "glossy.relmse");
-        add("probes", "glossy.relmse", opponent, mine, their, ratios,
+        const char* key = figureOf(their, "glossy.relmse") ? "glossy.relmse" : "diffuse.relmse"; // volumes have diffuse light alone
+        const Json ratios = ratiosOf(*mine, their, key);
+        add("probes", key, opponent, mine, their, ratios,
             fmt::format("With {} probes against {} of {}, Sconce takes {}.", figure(*figureOf(*mine, "probes")),
                         figure(*figureOf(their, "probes")), methodName(opponent), ratioText(ratios)));
     }
@@ -405,6 +409,7 @@ std::vector<std::string> answersOf(const Json& results)
         {"error", "wrong_rays", "trace_ms", "trace", "For as few wrong rays as the opponent, Sconce's trace takes"},
         {"probes", "glossy.relmse", nullptr, "wrong_rays", "With as many probes, Sconce answers wrongly"},
         {"probes", "glossy.relmse", nullptr, "error", "With as many probes, Sconce's glossy error is"},
+        {"probes", "diffuse.relmse", nullptr, "error", "With as many probes as a volume of irradiance, Sconce's diffuse error is"},
         {"error", "glossy.relmse", "bytes", "memory", "For the glossy error of the opponent, Sconce's light field takes"},
         {"time", "glossy.relmse", "frame_ms", "error", "In the opponent's frame time, Sconce's glossy error is"},
         {"memory", "glossy.relmse", "bytes", "error", "In the opponent's memory, Sconce's glossy error is"}};

@@ -25,11 +25,10 @@ struct Opponent
 
 const std::vector<Opponent>& opponents()
 {
-    static const std::vector<Opponent> all{{"ours-grid", "grid", 0, {}},
-                                           {"b0", "grid", 1, {0.5, 2.0}},
-                                           {"b0plus", "grid", 1, {0.5, 2.0}},
-                                           {"b0plus-octree", "optimised", 1, {0.5, 2.0}},
-                                           {"wang", "optimised", 2, {0.5}}};
+    static const std::vector<Opponent> all{{"ours-grid", "grid", 0, {}},        {"b0", "grid", 1, {0.5, 2.0}},
+                                           {"b0plus", "grid", 1, {0.5, 2.0}},   {"b0plus-octree", "optimised", 1, {0.5, 2.0}},
+                                           {"wang", "optimised", 2, {0.5}},     {"ddgi", "grid", 0, {}},
+                                           {"ddgi-placed", "optimised", 0, {}}, {"sh-grid", "grid", 0, {}}};
     return all;
 }
 
@@ -133,6 +132,15 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         planner.addProbeCounts(theirs[i], {0.5, 2.0});
         for (const double factor : opponents()[i].curve)
             planner.addVaried(theirs[i], *findKnob("resolution"), fmt::to_string(uint32_t(theirs[i].resolution * factor) & ~15u));
+        if (const std::optional<Volume> volume = theirs[i].volume())
+        {
+            // As many bytes as our diffuse light is read from.
+            if (*volume != Volume::ddgiPlaced)
+                planner.addProbeCounts(theirs[i], {double(kIrradianceWordsPerProbe) / double(volumeWordsPerProbe(*volume))});
+            for (const std::string_view value : findKnob("look-up bias")->sweep)
+                planner.addVaried(theirs[i], *findKnob("look-up bias"), std::string(value));
+            continue;
+        }
         planner.addVaried(theirs[i], *findKnob("rays"), "4");
         planner.addVaried(theirs[i], *findKnob("trace every"), "4"); // any tracer gains by it
     }

@@ -202,6 +202,36 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     return field;
 }
 
+/// Not kept: its light takes seconds.
+Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress)
+{
+    Result<FieldData> places = Error{ErrorCode::badInput, "A volume has no probes."};
+    if (volume == Volume::ddgiPlaced)
+        places = fieldFor(settings, cost, progress);
+    else
+    {
+        auto probes = probesFor(settings, progress);
+        if (!probes) return probes.error();
+        cost["probe_set"] = probes->name;
+        cost["place_s"] = probes->report["seconds"];
+        cost["coverage"] = probes->report["coverage"]["rays"];
+        if (!probes->set.grid)
+            return Error{ErrorCode::badArgument,
+                         fmt::format("Volume {} needs placement grid, not {}.", volumeName(volume), settings.placement)};
+        places = bareGrid(desc.scene, *probes->set.grid);
+    }
+    if (!places) return places;
+    const double begin = secondsNow();
+    VolumeSettings wanted;
+    wanted.bias = settings.lookUpBias;
+    wanted.bounces = settings.bounces;
+    wanted.seed = desc.settings.seed;
+    wanted.solids = checkScene(desc.scene).openEdgeShare <= kMostOpenEdges;
+    auto made = irradianceVolume(std::move(*places), volume, *truth, wanted, progress);
+    cost["bake_s"] = secondsNow() - begin;
+    return made;
+}
+
 Status SceneBench::makeReference(const std::optional<float>& roughness, const Progress& progress)
 {
     ReferenceSettings settings;
@@ -302,6 +332,7 @@ Result<const DeviceScene*> SceneBench::sceneOf(const IndirectEffects& effects, c
 uint64_t SceneBench::bytesOf(const PointSettings& settings)
 {
     if (settings.pathTraced()) return 0;
+    if (const std::optional<Volume> volume = settings.volume()) return uint64_t(settings.probes) * volumeWordsPerProbe(*volume) * 4;
     return uint64_t(settings.probes) * bytesPerProbe(settings.chart(), settings.resolution);
 }
 
@@ -311,6 +342,35 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
     live.plan = &point;
     const PointSettings& settings = point.settings;
     if (settings.pathTraced()) return live;
+    const std::optional<Volume> volume = settings.volume();
+    if (auto status = volume ? makeVolume(live, *volume, progress) : makeTracer(live, progress); !status) return status.error();
+    RenderSettings frame = settings.frame;
+    frame.width = desc.settings.width;
+    frame.height = desc.settings.height;
+    frame.seed = uint32_t(desc.settings.seed);
+    if (const std::optional<Baseline> opponent = settings.opponent())
+    {
+        const gpu::LightFieldInfo& info = live.tracer->data().info;
+        frame.lightShaders = lightPasses(*opponent);
+        // The frame's rays start where the race's do, for every tracer.
+        frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
+    }
+    if (volume)
+    {
+        frame.lightShaders.gather = volumePass(*volume);
+        frame.effects.rough = frame.effects.glossy = frame.effects.mirror = false; // it holds none
+    }
+    auto scene = sceneOf(frame.effects, progress);
+    if (!scene) return scene.error();
+    auto renderer = SceneRenderer::create(gpu, **scene, volume ? *live.volume : live.tracer->lightField(), frame);
+    if (!renderer) return renderer.error();
+    live.renderer = std::move(*renderer);
+    return live;
+}
+
+Status SceneBench::makeTracer(Live& live, const Progress& progress)
+{
+    const PointSettings& settings = live.plan->settings;
     auto field = fieldFor(settings, live.fieldCost, progress);
     if (!field) return field.error();
     auto tracer = TracedMethod::create(gpu, std::move(*field),
@@ -318,28 +378,24 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
                                         .quality = settings.quality,
                                         .distanceBits = settings.distanceBits,
                                         .lowFactor = settings.lowFactor},
-                                       point.id);
+                                       live.plan->id);
     if (!tracer) return tracer.error();
     live.tracer = std::move(*tracer);
-    const gpu::LightFieldInfo& info = live.tracer->data().info;
-    live.fieldCost["probes"] = info.probeCount;
+    live.fieldCost["probes"] = live.tracer->data().info.probeCount;
     live.fieldCost["bytes"] = bytesJson(live.tracer->bytes());
-    RenderSettings frame = settings.frame;
-    frame.width = desc.settings.width;
-    frame.height = desc.settings.height;
-    frame.seed = uint32_t(desc.settings.seed);
-    if (const std::optional<Baseline> opponent = settings.opponent())
-    {
-        frame.lightShaders = lightPasses(*opponent);
-        // The frame's rays start where the race's do, for every tracer.
-        frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
-    }
-    auto scene = sceneOf(frame.effects, progress);
-    if (!scene) return scene.error();
-    auto renderer = SceneRenderer::create(gpu, **scene, live.tracer->lightField(), frame);
-    if (!renderer) return renderer.error();
-    live.renderer = std::move(*renderer);
-    return live;
+    return success();
+}
+
+Status SceneBench::makeVolume(Live& live, Volume volume, const Progress& progress)
+{
+    auto field = volumeFor(live.plan->settings, volume, live.fieldCost, progress);
+    if (!field) return field.error();
+    live.fieldCost["probes"] = field->info.probeCount;
+    live.fieldCost["bytes"] = bytesJson(bytesByPart(*field));
+    auto light = makeLightField(gpu, *field);
+    if (!light) return light.error();
+    live.volume.emplace(std::move(*light));
+    return success();
 }
 
 Result<Json> SceneBench::errorsOf(const ImageSet& picture) const
@@ -390,9 +446,12 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
         return json;
     }
     json.update(live.fieldCost);
-    auto score = live.tracer->score(*rays);
-    if (!score) return score.error();
-    json["rays"] = raysJson(*score);
+    if (live.tracer)
+    {
+        auto score = live.tracer->score(*rays);
+        if (!score) return score.error();
+        json["rays"] = raysJson(*score);
+    }
     // A filter over time is judged when its history has filled, not by its first frame.
     Result<RenderedFrame> frame = live.renderer->render(camera);
     const uint32_t frames = point.settings.frame.effects.temporal ? kTemporalFrames : 1;
@@ -401,6 +460,7 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     auto errors = errorsOf(lightLayers(*frame));
     if (!errors) return errors.error();
     json["error"] = std::move(*errors);
+    if (live.volume) json["error"].erase("glossy"); // no reflections: compared by diffuse light and the whole picture
     json["wrong"] = wrongness(json, referenceImages.find("beauty")->pixels);
     if (desc.settings.pictures && point.knob == "default")
     {

@@ -60,12 +60,13 @@ public:
     /// Draws the rays; once, before anything below.
     Status prepare();
 
-    /// A point on the device, ready to be measured and timed. The path tracer's has neither tracer nor renderer.
+    /// A point on the device, ready to be measured and timed. The path tracer's has neither tracer nor renderer, a volume's no tracer.
     struct Live
     {
         const PlannedPoint* plan = nullptr;
         Json fieldCost; // probe_set, bytes, bake_s, place_s, ...
         std::unique_ptr<TracedMethod> tracer;
+        std::optional<LightField> volume; // in the tracer's place
         std::unique_ptr<SceneRenderer> renderer;
     };
     Result<Live> enliven(const PlannedPoint& point, const Progress& progress);
@@ -93,6 +94,9 @@ private:
     std::optional<BenchProbes> keptProbes(const PointSettings& settings) const;
     Result<BenchProbes> probesFor(const PointSettings& settings, const Progress& progress);
     Result<FieldData> fieldFor(const PointSettings& settings, Json& cost, const Progress& progress);
+    Result<FieldData> volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress);
+    Status makeTracer(Live& live, const Progress& progress);
+    Status makeVolume(Live& live, Volume volume, const Progress& progress);
     Status makeTruth();
     Result<const DeviceScene*> sceneOf(const IndirectEffects& effects, const Progress& progress);
     Result<Json> errorsOf(const ImageSet& picture) const;

@@ -70,19 +70,27 @@ SweptKnob knob(std::string_view name, Stage stage, std::vector<std::string_view>
         return s.member;                                                                                                                   \
     }
 
+std::vector<std::string_view> all(std::vector<std::string_view> some, const std::vector<std::string_view>& others)
+{
+    some.insert(some.end(), others.begin(), others.end());
+    return some;
+}
+
 std::vector<SweptKnob> makeKnobs()
 {
-    const std::vector<std::string_view> ours{"ours"}, placed{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
-        opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang"}, paths{kPathTracer},
-        fields{"ours", "ours-grid"}, lit{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", kPathTracer};
+    const std::vector<std::string_view> ours{"ours"}, tracers{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
+        opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang", "ddgi-placed"},
+        paths{kPathTracer}, fields{"ours", "ours-grid"}, volumes{"ddgi", "ddgi-placed", "sh-grid"},
+        placed = all(tracers, volumes), lit = all(placed, paths), mapped = all(tracers, {"ddgi-placed"});
     using enum Stage;
     return {
         knob("probes", place, placed, {}, knobs::benchProbes, SCONCE_FIELD(probes)),
         knob("placement", place, placed, {"optimised", "skeleton", "balls"}, knobs::placement, SCONCE_FIELD(placement)),
-        knob("resolution", bake, placed, {"128", "256", "416", "512", "1024"}, knobs::resolution, SCONCE_FIELD(resolution)),
+        knob("resolution", bake, mapped, {"128", "256", "416", "512", "1024"}, knobs::resolution, SCONCE_FIELD(resolution)),
         knob("bounces", bake, lit, {"0", "1", "2", "4"}, knobs::bounces, SCONCE_FIELD(bounces)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),
         knob("low factor", trace, opponents, {}, knobs::lowFactor, SCONCE_FIELD(lowFactor)),
+        knob("look-up bias", trace, volumes, {"0", "0.05", "0.1", "0.2", "0.4"}, knobs::lookUpBias, SCONCE_FIELD(lookUpBias)),
         knob("distance bits", trace, ours, {"16", "24", "32"}, knobs::distanceBits, SCONCE_FIELD(distanceBits)),
         knob("ranked", trace, ours, {"1", "2", "3", "4"}, knobs::ranked, SCONCE_FIELD(quality.trace.ranked)),
         knob("hand-offs", trace, ours, {"0", "2", "8", "24", "64"}, knobs::maxHandoffs, SCONCE_FIELD(quality.trace.maxHandoffs)),
@@ -91,15 +99,15 @@ std::vector<SweptKnob> makeKnobs()
         knob("tolerance", trace, ours, {"0.25", "0.5", "1", "2", "4"}, knobs::tolerance, SCONCE_FIELD(quality.trace.tolerance)),
         knob("opinion", trace, ours, {"0", "0.001", "0.002", "0.01"}, knobs::opinion, SCONCE_FIELD(quality.trace.opinion)),
         knob("far bounds", trace, ours, {"0", "1"}, knobs::farBounds, SCONCE_FIELD(quality.trace.farBounds)),
-        knob("rays", frame, placed, {"1", "2", "4", "8"}, knobs::glossyRays, SCONCE_FIELD(frame.glossyRays)),
-        knob("trace every", frame, placed, {"1", "2", "4", "8", "16"}, knobs::traceEvery, SCONCE_FIELD(frame.traceEvery)),
+        knob("rays", frame, tracers, {"1", "2", "4", "8"}, knobs::glossyRays, SCONCE_FIELD(frame.glossyRays)),
+        knob("trace every", frame, tracers, {"1", "2", "4", "8", "16"}, knobs::traceEvery, SCONCE_FIELD(frame.traceEvery)),
         knob("area samples", frame, placed, {"2", "8", "32"}, knobs::areaSamples, SCONCE_FIELD(frame.areaSamples)),
         knob("field shadows", frame, fields, {"off", "on"}, knobs::areaShadows, SCONCE_FIELD(frame.effects.fieldShadows)),
         knob("denoise", frame, placed, {"on", "off"}, knobs::denoise, SCONCE_FIELD(frame.effects.denoise)),
         knob("temporal", frame, placed, {"off", "on"}, knobs::temporal, SCONCE_FIELD(frame.effects.temporal)),
         knob("patches", frame, fields, {"off", "on"}, knobs::diffuse, SCONCE_FIELD(frame.effects.patches)),
-        knob("traced diffuse", frame, placed, {"off", "on"}, knobs::diffuse, SCONCE_FIELD(frame.effects.tracedDiffuse)),
-        knob("rays below", frame, placed, {"0", "0.2", "1"}, knobs::raysBelow, SCONCE_FIELD(frame.raysBelow)),
+        knob("traced diffuse", frame, tracers, {"off", "on"}, knobs::diffuse, SCONCE_FIELD(frame.effects.tracedDiffuse)),
+        knob("rays below", frame, tracers, {"0", "0.2", "1"}, knobs::raysBelow, SCONCE_FIELD(frame.raysBelow)),
         knob("paths", frame, paths, {"1", "4", "16", "64"}, knobs::tracedPaths, SCONCE_FIELD(paths)),
     };
 }

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/opponents/irradiance_volume.h"
 #include "bench/race/traced_method.h"
 #include "runtime/field/quality.h"
 #include "runtime/scene/scene_renderer.h"
@@ -23,13 +24,14 @@ inline constexpr const char* kPathTracer = "path tracer";
 /// Everything that one point of the bench is measured with, but its scene and picture. The defaults are ours.
 struct PointSettings
 {
-    std::string method = "ours"; // ours, ours-grid (on a uniform grid), an opponent's (bench/opponents/baselines.h), or the path tracer
-    uint32_t probes = knobs::benchProbes.value;                  // asked for; a grid takes the nearest that its shape allows
+    std::string method = "ours";                // ours, ours-grid (on a uniform grid), an opponent's (bench/opponents), or the path tracer
+    uint32_t probes = knobs::benchProbes.value; // asked for; a grid takes the nearest that its shape allows
     std::string placement = std::string(knobs::placement.value); // optimised, skeleton (not refined afterwards), balls, grid
     uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
     uint32_t bounces = knobs::benchBounces.value;
     int octreeVoxels = knobs::octreeVoxels.value; // OctreeSettings::voxels
     uint32_t lowFactor = knobs::lowFactor.value;  // of an opponent; 0: bestLowFactor
+    float lookUpBias = knobs::lookUpBias.value;   // of a volume of irradiance, metres
     int distanceBits = knobs::distanceBits.value; // of a texel of ours (bench/race/distance_format.h)
     Quality quality;                              // of our tracer
     RenderSettings frame;
@@ -37,6 +39,7 @@ struct PointSettings
 
     bool pathTraced() const { return method == kPathTracer; }
     std::optional<Baseline> opponent() const { return baselineNamed(method); }
+    std::optional<Volume> volume() const { return volumeNamed(method); }
     uint32_t chart() const; // that the method reads
 };
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdio>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "bench/race/traced_method.h"
+#include "bench/sweep/results.h"
 
 namespace sconce
 {
@@ -269,26 +269,14 @@ std::vector<Json> scaledPoints(std::vector<Json> points)
 
 std::string describePoint(const Json& point)
 {
-    char text[256];
-    const Json& error = point["error"];
-    const auto figure = [](const Json& value)
-    { return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN(); };
+    const auto figure = [&](std::string_view name) { return figureOf(point, name).value_or(std::numeric_limits<double>::quiet_NaN()); };
     std::string line = fmt::format("{}:", point["id"].get<std::string>());
     if (point.contains("rays"))
-    {
-        const Json& rays = point["rays"];
-        std::snprintf(text, sizeof text, " rays right %.2f %%, unresolved %.2f %%, %.1f reads;", 100.0 * figure(rays["right_1"]),
-                      100.0 * figure(rays["unresolved"]), figure(rays["reads_mean"]));
-        line += text;
-    }
-    std::snprintf(text, sizeof text, " relMSE of beauty %.4f, glossy %.4f", figure(error["beauty"]["relmse"]),
-                  figure(error["glossy"]["relmse"]));
-    line += text;
-    if (point.contains("bytes"))
-    {
-        std::snprintf(text, sizeof text, "; %.1f MB", figure(point["bytes"]["total"]) / 1e6);
-        line += text;
-    }
+        line += fmt::format(" rays right {:.2f} %, unresolved {:.2f} %, {:.1f} reads;", 100.0 - 100.0 * figure("wrong_rays"),
+                            100.0 * figure("unresolved"), figure("reads"));
+    line += fmt::format(" relMSE of beauty {:.4f}, diffuse {:.4f}", figure("beauty.relmse"), figure("diffuse.relmse"));
+    if (figureOf(point, "glossy.relmse")) line += fmt::format(", glossy {:.4f}", figure("glossy.relmse"));
+    if (point.contains("bytes")) line += fmt::format("; {:.1f} MB", figure("bytes") / 1e6);
     return line;
 }
 

@@ -70,7 +70,7 @@ private:
 
     Gpu& gpu;
     const DeviceScene& scene;
-    const LightField& field;
+    LightField field; // a handle: the caller's may go
     RenderSettings settings;
     GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, scratch, diffuseLayer, glossyLayer;
     Pipeline gBufferPass, directPass, areaPass, composePass;

@@ -26,4 +26,7 @@ bool nextCandidate(inout Candidates of, out uint probe, out float weight)
     while (of.corner < kGridCorners && !(weight > 0.0)) weight = gridWeight(of.cell, of.corner++, of.point, of.normal, of.view, probe);
     return weight > 0.0;
 }
+
+vec3 candidateLight(uint probe, vec3 normal) { return probeIrradiance(probe, normal); }
+vec3 blendedLight(vec3 mean) { return mean; }
 #include "gather_light.glsl"

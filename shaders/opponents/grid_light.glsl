@@ -2,24 +2,8 @@
 //   2017  McGuire et al. 2017, "Real-Time Global Illumination using Precomputed Light Field Probes", as their supplement weighs
 //   2021  Majercik et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", and 2021, "Scaling Probe-Based Real-Time
 //         Dynamic Global Illumination for Production"; and what ours has, of every method the same: a probe that a surface hides has no say
-const int kGridCorners = 8;
+#include "opponents/grid_cell.glsl"
 const float kGridBias = 0.1; // metres along the normal, and as many towards the viewer (Majercik et al. 2021)
-
-struct GridCell
-{
-    ivec3 low;
-    vec3 alpha; // the point's place in the cell, [0,1]
-};
-
-GridCell gridCellOf(vec3 point)
-{
-    vec3 at = (point - field.gridOrigin) / field.gridStep;
-    ivec3 last = max(ivec3(field.gridX, field.gridY, field.gridZ) - 2, ivec3(0));
-    GridCell cell;
-    cell.low = clamp(ivec3(floor(at)), ivec3(0), last);
-    cell.alpha = clamp(at - vec3(cell.low), 0.0, 1.0);
-    return cell;
-}
 
 /// Chebyshev's bound on what of a probe's light comes as far as a point (McGuire et al. 2017, section 5.2).
 float gridVisibility(uint probe, vec3 fromProbe, float away)
@@ -33,12 +17,8 @@ float gridVisibility(uint probe, vec3 fromProbe, float away)
 /// The probe of a corner (bits xyz) and its weight; 0 for a corner beyond the grid.
 float gridWeight(GridCell cell, int corner, vec3 point, vec3 normal, vec3 view, out uint probe)
 {
-    ivec3 bits = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
-    ivec3 at = cell.low + bits;
-    probe = 0u;
-    if (any(greaterThanEqual(at, ivec3(field.gridX, field.gridY, field.gridZ)))) return 0.0;
-    probe = uint(at.x) + field.gridX * (uint(at.y) + field.gridY * uint(at.z));
-    vec3 part = mix(1.0 - cell.alpha, cell.alpha, vec3(bits));
+    vec3 part;
+    if (!gridCorner(cell, corner, probe, part)) return 0.0;
     vec3 centre = probeHeader(probe).centre;
     vec3 toProbe = centre - point;
     vec3 direction = toProbe / max(length(toProbe), 1e-6);
