@@ -81,6 +81,7 @@ std::span<const KnobRow> knobRows()
     // Named one by one, since constants of different types can't be walked through; a test counts them against the header.
     static const std::vector<KnobRow> rows = {rowOf(method),
                                               rowOf(count),
+                                              rowOf(fitGrid),
                                               rowOf(coverage),
                                               rowOf(mapBytes),
                                               rowOf(placeSeed),
@@ -137,6 +138,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(pathBounces),
                                               rowOf(pathSeed),
                                               rowOf(pixelCentre),
+                                              rowOf(parts),
                                               rowOf(benchProbes),
                                               rowOf(benchResolution),
                                               rowOf(referenceBounces),

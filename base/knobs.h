@@ -145,6 +145,12 @@ inline constexpr Knob<uint32_t> count{.name = "count",
                                       .what = "Probes",
                                       .buys = "surface that some probe sees; memory and bake time grow in proportion to the probes",
                                       .readme = true};
+inline constexpr Knob<bool> fitGrid{.name = "fitGrid",
+                                    .option = "place --fit-grid",
+                                    .member = "PlaceSettings::fitGrid",
+                                    .value = false,
+                                    .what = "Of a grid: the shape and the distance from the bounds that see most, of some",
+                                    .buys = "coverage; a check of it for each"};
 inline constexpr Knob<float> coverage{.name = "coverage",
                                       .option = "place --coverage",
                                       .member = "PlaceSettings::coverage",
@@ -636,6 +642,12 @@ inline constexpr Knob<bool> pixelCentre{.name = "pixelCentre",
                                         .member = "ReferenceSettings::pixelCentre",
                                         .value = false,
                                         .what = "Every path starts at its pixel's centre as a rasteriser's, edges are not smoothed"};
+inline constexpr Knob<bool> parts{.name = "parts",
+                                  .option = "reference --parts",
+                                  .member = "ReferenceSettings::parts",
+                                  .value = false,
+                                  .what = "Parts of the paths as layers of their own, NAME_a, NAME_b and NAME_c",
+                                  .buys = "errors against it without its own noise; nine layers of memory"};
 
 // ---- the bench
 
@@ -671,7 +683,7 @@ inline constexpr Knob<uint32_t> benchBounces{.name = "bounces",
                                              .least = bounces.least,
                                              .most = referenceBounces.value,
                                              .unit = bounces.unit,
-                                             .what = "Of the default points and of the path tracer; the reference has the most"};
+                                             .what = "Of the default points; the reference and the path tracer have the most"};
 inline constexpr Knob<uint32_t> benchWidth{.name = "width",
                                            .option = "bench --size",
                                            .member = "BenchSettings::width",

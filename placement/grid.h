@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "scene/probe_grid.h"
 #include "scene/scene.h"
@@ -8,10 +9,14 @@
 namespace sconce
 {
 
-/// The grid of about `count` points (within 15 %) whose cells in the bounds are most nearly cubes.
-glm::ivec3 gridShape(const Bounds& bounds, uint32_t count);
+/// The grids of about `count` points (within 15 %), those first whose cells in the bounds are most nearly cubes; at most `most` of them.
+std::vector<glm::ivec3> gridShapes(const Bounds& bounds, uint32_t count, size_t most);
 
-/// A grid at the centres of equal cells of the bounds.
-ProbeGrid gridIn(const Bounds& bounds, glm::ivec3 count);
+/// The same of powers of two along each axis, up to 64: all of the product that is nearest to the count in ratio.
+std::vector<glm::ivec3> powerOfTwoShapes(const Bounds& bounds, uint32_t count, size_t most);
+
+/// A grid in the bounds, whose outermost points are `margin` of a step from them: 0.5, the centres of equal cells; 0, points on the bounds
+/// themselves. A single point along an axis is in its middle.
+ProbeGrid gridIn(const Bounds& bounds, glm::ivec3 count, float margin = 0.5f);
 
 } // namespace sconce

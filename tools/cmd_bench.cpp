@@ -179,14 +179,14 @@ void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings&
     plan.knobs = options["knobs"].get<std::vector<std::string>>();
 }
 
-/// The points of a guarded scene, measured anew: ours alone, without pictures.
+/// The points of a guarded scene, measured anew: ours and B0+, without pictures.
 Result<std::vector<Json>> guardedPoints(const BenchRun& run, const std::string& source, BenchSettings settings, PlanSettings plan)
 {
     const Scratch scratch;
     if (scratch.path.empty())
         return Error{ErrorCode::fileError, "No temporary folder can be made; set TMPDIR to one that can be written to."};
     settings.pictures = false;
-    plan.methods = {"ours"};
+    plan.methods = {"ours", "b0plus"}; // an opponent that gets worse is no better bench
     const Result<Json> scene = benchScene(run, source, plan, settings, scratch.path, [](const Json&) { return success(); });
     if (!scene) return scene.error();
     return (*scene)["points"].get<std::vector<Json>>();
@@ -290,7 +290,7 @@ void addBenchCommand(CLI::App& app, Context& context)
         ->type_name("FILE");
     bench
         ->add_option("--baseline", options->baseline,
-                     described("Write such a baseline of the scenes, ours alone, instead of results", words("none")))
+                     described("Write such a baseline of the scenes, ours and b0plus, instead of results", words("none")))
         ->type_name("FILE");
     addKnob(bench, "--spp", settings.referencePaths, knobs::referencePaths);
     addKnob(bench, "--seed", settings.seed, knobs::benchSeed);

@@ -172,6 +172,7 @@ void addPlaceCommand(CLI::App& app, Context& context)
                       "\"add\" stays beside --count, \"forbid\" with \"radius\" in metres allows no probe there; not with a grid",
                       words("none")))
         ->type_name("FILE");
+    addSwitch(command, "--fit-grid", settings.fitGrid, knobs::fitGrid);
     addKnob(command, "--coverage", settings.coverage, knobs::coverage, "F", knobs::coverage.what);
     command
         ->add_option_function<std::vector<std::string>>(

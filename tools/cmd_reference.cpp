@@ -15,8 +15,9 @@ namespace sconce::tools
 namespace
 {
 
-const std::vector<std::string> kReferenceLayers = {"beauty", "direct", "diffuse_indirect", "glossy_indirect",
-                                                   "depth",  "normal", "albedo",           "roughness"};
+const std::vector<std::string> kReferenceLayers = {
+    "beauty", "direct", "diffuse_indirect", "glossy_indirect", "depth", "normal", "albedo", "roughness",
+};
 
 struct ReferenceOptions
 {
@@ -116,6 +117,7 @@ int runCompare(const CompareOptions& options, const Context& context)
     json["non_finite_pixels"] = result->nonFinitePixels;
     for (const auto& [name, value] : values)
         if (value) json[name] = *value; // psnr of equal pictures is infinite: null
+    if (result->relMseUnsure) json["relmse_unsure"] = *result->relMseUnsure;
     json["missed"] = Json::array();
     bool missed = false;
     // PSNR alone is better where it is higher.
@@ -150,6 +152,7 @@ void addReferenceCommands(CLI::App& app, Context& context)
     addKnob(reference, "--roughness", settings.roughness, knobs::roughness, "R");
     addKnob(reference, "--seed", settings.seed, knobs::pathSeed);
     addSwitch(reference, "--pixel-centre", settings.pixelCentre, knobs::pixelCentre);
+    addSwitch(reference, "--parts", settings.parts, knobs::parts);
     options->pictures.add(reference, kReferenceLayers);
     onChosen(reference, context, options, runReference);
 

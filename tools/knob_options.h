@@ -59,7 +59,7 @@ template <class T> CLI::Validator checkOf(const Knob<T>& knob)
 template <class T> std::string typeName(const Knob<T>& knob)
 {
     std::string names;
-    for (const T choice : knob.only) names += (names.empty() ? "" : "|") + knobText(choice);
+    for (const T choice : knob.only) names += fmt::format("{}{}", names.empty() ? "" : "|", knobText(choice));
     return names;
 }
 

@@ -13,6 +13,10 @@
 namespace sconce
 {
 
+/// How layers of parts of a reference's paths are called after their whole (ReferenceSettings::parts): a quarter, another, and the half
+/// that is left.
+inline constexpr const char* kParts[] = {"_a", "_b", "_c"};
+
 /// One named picture of 1 or 3 floats a pixel, row 0 at the top.
 struct Layer
 {

@@ -66,6 +66,41 @@ double relativeMeanSquaredError(std::span<const float> a, std::span<const float>
     return sum / static_cast<double>(a.size());
 }
 
+namespace
+{
+
+/// @param scale  i -> what the square of a difference is divided by
+template <class Scale>
+Estimate crossed(std::span<const float> a, std::span<const float> part, std::span<const float> other, const Scale& scale)
+{
+    assert(a.size() == part.size() && a.size() == other.size());
+    double sum = 0.0, variances = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+    {
+        const double product = (double(a[i]) - part[i]) * (double(a[i]) - other[i]), by = scale(i);
+        // With parts of variance v each, the product's is 2 v d^2 + v^2. Their difference squared has the mean 2 v, its square 12 v^2, and
+        // the product times it 2 v d^2 - 2 v^2 (normal noise).
+        const double noise = (double(part[i]) - other[i]) * (double(part[i]) - other[i]);
+        sum += product / by;
+        variances += (product * noise + 0.25 * noise * noise) / (by * by);
+    }
+    return {sum / double(a.size()), std::sqrt(std::max(variances, 0.0)) / double(a.size())};
+}
+
+} // namespace
+
+Estimate meanSquaredError(std::span<const float> a, std::span<const float> part, std::span<const float> other)
+{
+    return crossed(a, part, other, [](size_t) { return 1.0; });
+}
+
+Estimate relativeMeanSquaredError(std::span<const float> a, std::span<const float> part, std::span<const float> other,
+                                  std::span<const float> scale)
+{
+    assert(a.size() == scale.size());
+    return crossed(a, part, other, [&](size_t i) { return double(scale[i]) * double(scale[i]) + 0.01; });
+}
+
 double meanOverMean(std::span<const float> a, std::span<const float> reference)
 {
     assert(a.size() == reference.size());
@@ -115,6 +150,20 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
     const float exposure = settings.exposure.value_or(autoExposure(right));
     if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
     if (settings.relMse) result.relMse = whole ? relativeMeanSquaredError(left, right) : nan;
+    std::vector<std::vector<float>> parts;
+    for (const char* name : kParts)
+        if (const Layer* part = reference.find(settings.layer + name))
+        {
+            parts.push_back(asRgb(*part));
+            if (parts.back().size() != left.size() || nonFinitePixels(*part) > 0)
+                return Error{ErrorCode::badInput, fmt::format("the reference's layer '{}' is damaged; render it again", part->name)};
+        }
+    if (whole && parts.size() == std::size(kParts))
+    {
+        if (settings.mse) result.mse = meanSquaredError(left, parts[0], parts[1]).value;
+        const Estimate relative = relativeMeanSquaredError(left, parts[0], parts[1], parts[2]);
+        if (settings.relMse) result.relMse = relative.value, result.relMseUnsure = relative.unsure;
+    }
     if (settings.mean) result.mean = whole ? meanOverMean(left, right) : nan;
     if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, exposure) : nan;
     if (settings.flip && whole)

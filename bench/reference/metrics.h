@@ -16,6 +16,17 @@ namespace sconce
 double meanSquaredError(std::span<const float> a, std::span<const float> reference);
 /// Mean of (a - b)^2 / (b^2 + 0.01), b the reference: errors in the dark count as much as those in the light.
 double relativeMeanSquaredError(std::span<const float> a, std::span<const float> reference);
+/// An error and about its standard error by the noise of what it is measured against.
+struct Estimate
+{
+    double value = 0.0, unsure = 0.0;
+};
+/// Both errors without the noise of the reference: a's differences from two parts of its paths are multiplied, whose noises are
+/// independent, so that the product's mean is the squared difference from what both tend to. It may come out below 0.
+/// @param scale  a third part: what relative errors are relative to. Its noise makes them larger by a factor, of every picture the same
+Estimate meanSquaredError(std::span<const float> a, std::span<const float> part, std::span<const float> other);
+Estimate relativeMeanSquaredError(std::span<const float> a, std::span<const float> part, std::span<const float> other,
+                                  std::span<const float> scale);
 /// Mean of all values over the reference's mean: whether there is too much light, or too little. NaN where the reference is black.
 double meanOverMean(std::span<const float> a, std::span<const float> reference);
 /// 10 log10(1 / MSE) of both pictures as shown: exposure, toneMapAces, sRGB; peak 1. +infinity when equal. Decibels.
@@ -39,14 +50,16 @@ struct CompareResult
     uint32_t height = 0;
     std::optional<double> mse;
     std::optional<double> relMse;
-    std::optional<double> psnr;   // dB, +infinity when equal
-    std::optional<double> flip;   // mean of the map, [0,1]
-    std::optional<double> mean;   // over the reference's
-    std::vector<float> errorMap;  // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
-    uint64_t nonFinitePixels = 0; // of the compared picture; any makes the metrics NaN
+    std::optional<double> relMseUnsure; // standard error by the reference's noise, where it has parts
+    std::optional<double> psnr;         // dB, +infinity when equal
+    std::optional<double> flip;         // mean of the map, [0,1]
+    std::optional<double> mean;         // over the reference's
+    std::vector<float> errorMap;        // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
+    uint64_t nonFinitePixels = 0;       // of the compared picture; any makes the metrics NaN
 };
 
-/// Compares a layer of two pictures of equal size. Errors: badInput names the layer, the sizes, or the reference's non-finite pixels.
+/// Compares a layer of two pictures of equal size. Where the reference has the layer's parts (ReferenceSettings::parts), MSE and relMSE
+/// are without its noise. Errors: badInput names the layer, the sizes, or the reference's non-finite pixels.
 Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings = {});
 
 /// The map in false colours from black over purple to yellow (magma, Smith and van der Walt 2015), as linear RGB for writePng.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 
+#include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
@@ -44,9 +45,11 @@ bool allFinite(const PathLight& p)
 
 Status check(const ReferenceSettings& s)
 {
-    const std::string fault = firstFault({faultOf(knobs::width, s.width), faultOf(knobs::height, s.height),
-                                          faultOf(knobs::paths, s.samples), faultOf(knobs::pathBounces, s.bounces),
-                                          s.roughness ? faultOf(knobs::roughness, *s.roughness) : std::string(), cameraFault(s.camera)});
+    const std::string fault = firstFault(
+        {faultOf(knobs::width, s.width), faultOf(knobs::height, s.height), faultOf(knobs::paths, s.samples),
+         faultOf(knobs::pathBounces, s.bounces),
+         s.parts && s.samples < 4 ? std::string("parts need at least 4 paths a pixel; give more, or leave them out") : std::string(),
+         s.roughness ? faultOf(knobs::roughness, *s.roughness) : std::string(), cameraFault(s.camera)});
     if (!fault.empty()) return Error{ErrorCode::badArgument, fault};
     return success();
 }
@@ -92,6 +95,7 @@ struct Frame
     ImageSet images;
     std::vector<glm::dvec3> error; // [pixel] relative squared error of the means of beauty, diffuse, glossy, by halves of the samples
     std::atomic<uint64_t> nonFinite{0};
+    size_t firstPart = 0; // layer
 
     enum : size_t
     {
@@ -112,11 +116,17 @@ struct Frame
         images.height = s.height;
         for (const char* name : {"beauty", "direct", "diffuse_indirect", "glossy_indirect"}) images.add(name, 3);
         error.resize(images.pixelCount());
-        if (!settings.guides) return;
-        images.add("depth", 1);
-        images.add("normal", 3);
-        images.add("albedo", 3);
-        images.add("roughness", 1);
+        if (settings.guides)
+        {
+            images.add("depth", 1);
+            images.add("normal", 3);
+            images.add("albedo", 3);
+            images.add("roughness", 1);
+        }
+        firstPart = images.layers.size();
+        if (settings.parts)
+            for (const char* name : {"beauty", "diffuse_indirect", "glossy_indirect"})
+                for (const char* part : kParts) images.add(fmt::format("{}{}", name, part), 3);
     }
 
     void store(size_t layer, size_t pixel, vec3 value)
@@ -142,7 +152,7 @@ struct Frame
         const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
         if (settings.guides) guides(pixel, centre);
         // Every other path in each half: what the two halves differ by tells the error of the whole.
-        glm::dvec3 sums[3]{}, halves[3][2]{}; // of beauty, diffuse, glossy
+        glm::dvec3 sums[3]{}, halves[3][2]{}, parts[3][3]{}; // of beauty, diffuse, glossy
         for (uint32_t i = 0; i < settings.samples; ++i)
         {
             if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
@@ -165,12 +175,23 @@ struct Frame
             halves[0][i & 1] += path.direct + path.diffuse + path.glossy;
             halves[1][i & 1] += path.diffuse;
             halves[2][i & 1] += path.glossy;
+            const uint32_t part = std::min(i % 4, 2u);
+            parts[0][part] += path.direct + path.diffuse + path.glossy;
+            parts[1][part] += path.diffuse;
+            parts[2][part] += path.glossy;
         }
         const double count = settings.samples;
-        const vec3 parts[3] = {vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count)};
-        for (size_t i = 0; i < 3; ++i) store(direct + i, pixel, parts[i]);
-        store(beauty, pixel, parts[0] + parts[1] + parts[2]);
+        const vec3 means[3] = {vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count)};
+        for (size_t i = 0; i < 3; ++i) store(direct + i, pixel, means[i]);
+        store(beauty, pixel, means[0] + means[1] + means[2]);
         if (!pace.goOn((settings.samples - 1) % Pace::kStep + 1)) return false; // the paths since the last question
+        if (settings.parts)
+            for (size_t i = 0; i < 9; ++i)
+            {
+                const uint32_t part = uint32_t(i % 3),
+                               of = part < 2 ? (settings.samples + 3 - part) / 4 : settings.samples / 4 + (settings.samples + 1) / 4;
+                store(firstPart + i, pixel, vec3(parts[i / 3][part] / double(of)));
+            }
         if (settings.samples < 2) return true;
         for (int part = 0; part < 3; ++part)
         {

@@ -24,7 +24,8 @@ struct ReferenceSettings
     std::optional<float> roughness;              // [0,1]; set: the roughness of every surface
     bool guides = true;                          // depth, normal, albedo and roughness, too: one more ray a pixel; false: left out
     bool pixelCentre =
-        knobs::pixelCentre.value; // true: every path starts at the pixel's centre, as a rasteriser's; false: box filter over the pixel
+        knobs::pixelCentre.value;    // true: every path starts at the pixel's centre, as a rasteriser's; false: box filter over the pixel
+    bool parts = knobs::parts.value; // layers kParts of beauty and the indirect terms: what some of the paths bring
     Camera camera;
 };
 

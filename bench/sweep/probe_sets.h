@@ -15,14 +15,11 @@ struct BenchProbes
 };
 
 /// The probes that these settings ask for: by our placement, without its refinement (skeleton), from ball shrinking, or on a uniform grid
-/// in the reachable space; b0's grid has counts that are powers of two, the nearest to what was asked.
+/// in the reachable space, in the shape and pose that see most; b0's has counts that are powers of two, the nearest to what was asked.
 /// Errors: as placeProbes(); badArgument names the placement.
 Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress);
 
 /// The name alone, as results call the set.
 std::string probeSetName(const PointSettings& settings);
-
-/// The power-of-two counts whose product is nearest to `count` (in ratio), and of those the ones whose cells are most nearly cubes.
-glm::ivec3 powerOfTwoShape(const Bounds& bounds, uint32_t count);
 
 } // namespace sconce

@@ -102,11 +102,11 @@ std::optional<double> figureOf(const Json& point, std::string_view name)
 {
     if (name == "frame_ms" || name == "trace_ms") return numberAt(point, {name, "median"});
     if (name == "reads") return numberAt(point, {"rays", "reads_mean"});
-    if (name == "unresolved") return numberAt(point, {"rays", "unresolved"});
+    if (name == "unresolved" || name == "false" || name == "leak") return numberAt(point, {"rays", name});
     if (name == "bytes") return numberAt(point, {"bytes", "total"});
-    if (name == "wrong_rays")
+    if (name == "wrong_rays" || name == "wrong_rays_02") // within 1 % of the diagonal, 0.2 %
     {
-        const auto right = numberAt(point, {"rays", "right_1"});
+        const auto right = numberAt(point, {"rays", name == "wrong_rays" ? "right_1" : "right_02"});
         return right ? std::optional(1.0 - *right) : std::nullopt;
     }
     if (const size_t dot = name.find('.'); dot != std::string_view::npos)

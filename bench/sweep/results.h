@@ -20,8 +20,9 @@ std::string resultsCsv(const Json& results);
 /// Reads results.json, or what has its schema. Errors: fileError, badInput (another schema).
 Result<Json> readResults(const std::filesystem::path& file);
 
-/// The figures that a point is judged by, by name: frame_ms, trace_ms, reads (a ray), wrong_rays (share not right within 1 %), unresolved,
-/// bytes, probes, bake_s, {beauty,diffuse,glossy}.{mse,relmse,flip}. None where it wasn't measured.
+/// The figures that a point is judged by, by name: frame_ms, trace_ms, reads (a ray), wrong_rays (share not right within 1 %),
+/// wrong_rays_02 (0.2 %), unresolved, false, leak, bytes, probes, bake_s, {beauty,diffuse,glossy}.{mse,relmse,flip,mean}. None where it
+/// wasn't measured.
 std::optional<double> figureOf(const Json& point, std::string_view name);
 
 } // namespace sconce

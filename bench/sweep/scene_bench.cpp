@@ -243,6 +243,7 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
     // Compared pixel by pixel with frames that have one sample a pixel, at its centre: a filtered reference would show every edge as an
     // error.
     settings.pixelCentre = true; // as the rasteriser's
+    settings.parts = true;       // so that its noise is no part of any error
     settings.roughness = roughness;
     settings.camera = camera;
     Json all = {{"build", desc.build},
@@ -408,8 +409,11 @@ Result<Json> SceneBench::errorsOf(const ImageSet& picture) const
         settings.psnr = false;
         auto compared = compareImages(picture, referenceImages, settings);
         if (!compared) return compared.error();
-        errors[name] = {
-            {"mse", numberOrNull(*compared->mse)}, {"relmse", numberOrNull(*compared->relMse)}, {"flip", numberOrNull(*compared->flip)}};
+        errors[name] = {{"mse", numberOrNull(*compared->mse)},
+                        {"relmse", numberOrNull(*compared->relMse)},
+                        {"flip", numberOrNull(*compared->flip)},
+                        {"mean", numberOrNull(*compared->mean)},
+                        {"relmse_unsure", numberOrNull(compared->relMseUnsure.value_or(0.0))}};
     }
     return errors;
 }
@@ -420,7 +424,7 @@ ReferenceSettings SceneBench::pathSettings(const PlannedPoint& point) const
     paths.width = desc.settings.width;
     paths.height = desc.settings.height;
     paths.samples = point.settings.paths;
-    paths.bounces = point.settings.bounces; // what the light fields have, too
+    paths.bounces = desc.settings.referenceBounces; // the truth's
     paths.seed = desc.settings.seed + kPathSeed;
     paths.roughness = point.settings.frame.roughness;
     paths.pixelCentre = true;

@@ -80,14 +80,14 @@ std::vector<SweptKnob> makeKnobs()
 {
     const std::vector<std::string_view> ours{"ours"}, tracers{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
         opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang", "ddgi-placed"},
-        paths{kPathTracer}, fields{"ours", "ours-grid"}, volumes{"ddgi", "ddgi-placed", "sh-grid"},
-        placed = all(tracers, volumes), lit = all(placed, paths), mapped = all(tracers, {"ddgi-placed"});
+        paths{kPathTracer}, fields{"ours", "ours-grid"}, volumes{"ddgi", "ddgi-placed", "sh-grid"}, placed = all(tracers, volumes),
+                                                                                                    mapped = all(tracers, {"ddgi-placed"});
     using enum Stage;
     return {
         knob("probes", place, placed, {}, knobs::benchProbes, SCONCE_FIELD(probes)),
         knob("placement", place, placed, {"optimised", "skeleton", "balls"}, knobs::placement, SCONCE_FIELD(placement)),
         knob("resolution", bake, mapped, {"128", "256", "416", "512", "1024"}, knobs::resolution, SCONCE_FIELD(resolution)),
-        knob("bounces", bake, lit, {"0", "1", "2", "4"}, knobs::bounces, SCONCE_FIELD(bounces)),
+        knob("bounces", bake, placed, {"0", "1", "2", "4"}, knobs::bounces, SCONCE_FIELD(bounces)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),
         knob("low factor", trace, opponents, {}, knobs::lowFactor, SCONCE_FIELD(lowFactor)),
         knob("look-up bias", trace, volumes, {"0", "0.05", "0.1", "0.2", "0.4"}, knobs::lookUpBias, SCONCE_FIELD(lookUpBias)),

@@ -318,7 +318,7 @@ TEST(PlaceProbes, SponzaIsSeenBy54Probes)
     PlaceReport report;
     const ProbeSet set = placed(*scene, settings, report);
     ASSERT_EQ(set.probes.size(), 54u);
-    EXPECT_GE(report.coverageRays, 0.993f);
+    EXPECT_GE(report.coverageRays, 0.9976f); // found: 0.99815, three standard errors above
     // The atrium and its arcades, not the roof and the outside: the scene's box is 51 x 21 x 31 m.
     EXPECT_LT(report.reachable.size().x, 40.0f);
     EXPECT_LT(report.reachable.size().z, 20.0f);

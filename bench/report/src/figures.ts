@@ -51,6 +51,7 @@ const kMetrics: [string, string][] = [
     ["relmse", "relMSE"],
     ["mse", "MSE"],
     ["flip", "FLIP"],
+    ["mean", "mean over the reference's"],
 ];
 const errors: Figure[] = ["glossy", "diffuse", "beauty"].flatMap((layer) =>
     kMetrics.map(([metric, name]): Figure => {
@@ -61,7 +62,7 @@ const errors: Figure[] = ["glossy", "diffuse", "beauty"].flatMap((layer) =>
             short: `${layer} ${name}`,
             unit: "",
             group: "error",
-            better: "lower",
+            better: metric === "mean" ? undefined : "lower",
             show: number,
             axis: 1,
             of: (point) => path(point, key),

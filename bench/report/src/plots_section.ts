@@ -15,10 +15,13 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
     const first = offered[0] as Figure;
     const timed = measured(points(scene), [figure("frame_ms")]).length > 0;
     const costs = kCosts.map((key) => (key === "frame_ms" && !timed ? figure("trace_ms") : figure(key)));
-    /** The reference's own relMSE: what is below it can't be told from the truth. */
+    /** What can't be told from the truth: the errors' standard error by the reference's noise, or its own relMSE where there are none. */
     const noiseOf = (error: Figure): number | null => {
         const layer = /^error\.(.*)\.relmse$/.exec(error.key)?.[1];
-        const noise = scene.reference?.estimated_relmse?.[layer ?? ""];
+        const unsure = points(scene)
+            .map((point) => point.error?.[layer ?? ""]?.relmse_unsure)
+            .filter(isNumber);
+        const noise = unsure.length > 0 ? Math.max(...unsure) : scene.reference?.estimated_relmse?.[layer ?? ""];
         return isNumber(noise) && noise > 0 ? noise : null;
     };
     const plots = costs.map((cost) => scatter(points(scene), cost, first, noiseOf, styles, store));

@@ -219,7 +219,7 @@ TraceScore cornellScore(Baseline baseline)
 TEST(BaselineWang, IsAsRightAsTheTwoLevelMarchOnTheSameLists)
 {
     const TraceScore two = cornellScore(Baseline::b0PlusOctree), chain = cornellScore(Baseline::wang);
-    EXPECT_GE(two.right1, 0.85); // maps of 128 texels; thicknesses of up to a metre in a box of two
+    EXPECT_GE(two.right1, 0.88); // found: 0.8876; maps of 128 texels; thicknesses of up to a metre in a box of two
     EXPECT_NEAR(chain.right1, two.right1, 0.01);
     EXPECT_NEAR(chain.unresolved, two.unresolved, 0.01);
     EXPECT_GT(chain.indexReads.mean, 0.0);

@@ -106,5 +106,50 @@ TEST(ErrorColours, EndsAreMagmasEnds)
     EXPECT_NEAR(srgbFromLinear(colours[5]) * 255.0f, 191.0f, 0.1f);
 }
 
+/// A picture that is off by a known part, against a reference whose noise is three times as large: its error is the part alone.
+TEST(Metrics, PartsTakeTheReferencesNoiseOutOfErrors)
+{
+    constexpr uint32_t kSide = 256;
+    constexpr float kTruth = 0.5f, kOff = 0.05f, kNoise[] = {0.15f, 0.15f, 0.02f}; // standard deviation of each part
+    ImageSet picture, reference;
+    for (ImageSet* images : {&picture, &reference}) images->width = images->height = kSide;
+    for (const char* name : {"beauty", "beauty_a", "beauty_b", "beauty_c"}) reference.add(name, 3);
+    picture.add("beauty", 3);
+    Random random(5, 1);
+    const auto normal = [&] { return std::sqrt(-2.0f * std::log(1.0f - random.uniform())) * std::cos(6.2831853f * random.uniform()); };
+    for (size_t i = 0; i < 3 * picture.pixelCount(); ++i)
+    {
+        picture.layers[0].pixels[i] = kTruth + kOff;
+        for (size_t part = 1; part < 4; ++part) reference.layers[part].pixels[i] = kTruth + kNoise[part - 1] * normal();
+        reference.layers[0].pixels[i] = 0.5f * (reference.layers[1].pixels[i] + reference.layers[2].pixels[i]);
+    }
+    const auto with = compareImages(picture, reference);
+    ASSERT_TRUE(with) << with.error().message;
+    const double expected = double(kOff) * kOff, v = double(kNoise[0]) * kNoise[0], scale = kTruth * kTruth + 0.01;
+    const double unsure = std::sqrt((2.0 * expected * v + v * v) / (3.0 * kSide * kSide));
+    EXPECT_NEAR(*with->mse, expected, 4.0 * unsure);
+    EXPECT_NEAR(*with->relMse, expected / scale, 4.0 * unsure / scale + 0.005 * expected / scale); // and 3 times the divisor's variance
+    EXPECT_NEAR(*with->relMseUnsure, unsure / scale, 0.05 * unsure / scale);
+    // Without parts the noise counts: half of each one's variance, here the mean's.
+    reference.layers.resize(1);
+    const auto without = compareImages(picture, reference);
+    EXPECT_NEAR(*without->mse, expected + 0.5 * v, 0.05 * v);
+    EXPECT_FALSE(without->relMseUnsure);
+}
+
+TEST(Metrics, DamagedPartsAreRefused)
+{
+    ImageSet picture;
+    picture.width = picture.height = 4;
+    picture.add("beauty", 3);
+    ImageSet reference = picture;
+    reference.add("beauty_a", 3);
+    reference.add("beauty_b", 3);
+    reference.layers[2].pixels[7] = std::numeric_limits<float>::quiet_NaN();
+    const auto refused = compareImages(picture, reference);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("'beauty_b' is damaged"), std::string::npos) << refused.error().message;
+}
+
 } // namespace
 } // namespace sconce

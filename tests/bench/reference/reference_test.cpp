@@ -293,5 +293,37 @@ TEST(Reference, EmptySceneIsSky)
     EXPECT_EQ(meanOf(render(scene, view(vec3(0.0f), {0, 0, -1}, 3, 1)).images, "beauty").value, 0.5);
 }
 
+/// A quarter, a quarter and a half of the paths: their mean is the picture, whether or not the number divides.
+TEST(Reference, PartsMakeTheWhole)
+{
+    const Scene scene = smallRoom();
+    for (const uint32_t paths : {8u, 11u})
+    {
+        ReferenceSettings settings = view({0, 0, 0.9f}, vec3(0.0f), 24, paths, 1.2f);
+        settings.parts = true;
+        const auto reference = renderReference(scene, settings);
+        ASSERT_TRUE(reference) << reference.error().message;
+        const float counts[] = {float((paths + 3) / 4), float((paths + 2) / 4), float(paths / 4 + (paths + 1) / 4)};
+        for (const std::string name : {"beauty", "diffuse_indirect", "glossy_indirect"})
+        {
+            const auto& whole = reference->images.find(name)->pixels;
+            size_t differ = 0;
+            for (size_t i = 0; i < whole.size(); ++i)
+            {
+                float sum = 0.0f, part[3];
+                for (size_t p = 0; p < 3; ++p) sum += counts[p] * (part[p] = reference->images.find(name + kParts[p])->pixels[i]);
+                EXPECT_NEAR(whole[i], sum / float(paths), 1e-5f * (1.0f + whole[i])) << name << " " << i;
+                differ += part[0] != part[1] && part[1] != part[2] ? 1 : 0;
+            }
+            EXPECT_GT(differ, 0u) << name;
+        }
+    }
+    ReferenceSettings few = view({0, 0, 0.9f}, vec3(0.0f), 4, 3, 1.2f);
+    few.parts = true;
+    const auto refused = renderReference(scene, few);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("parts"), std::string::npos) << refused.error().message;
+}
+
 } // namespace
 } // namespace sconce

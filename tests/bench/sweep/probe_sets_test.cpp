@@ -9,21 +9,6 @@ namespace sconce
 namespace
 {
 
-TEST(PowerOfTwoShape, IsNearestInCountThenInShape)
-{
-    const auto shape = [](vec3 size, uint32_t count)
-    {
-        Bounds bounds;
-        bounds.add(vec3(0.0f));
-        bounds.add(size);
-        return powerOfTwoShape(bounds, count);
-    };
-    EXPECT_EQ(shape({8, 3, 8}, 32), glm::ivec3(4, 2, 4));
-    EXPECT_EQ(shape({1, 1, 1}, 8), glm::ivec3(2, 2, 2));
-    EXPECT_EQ(shape({8, 1, 1}, 54), glm::ivec3(16, 2, 2)); // 64 is nearer in ratio than 32
-    EXPECT_EQ(shape({5, 5, 5}, 1), glm::ivec3(1, 1, 1));
-}
-
 PointSettings asked(const char* method, const char* placement, uint32_t probes)
 {
     PointSettings settings;
