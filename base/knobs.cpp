@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 namespace sconce
 {
 
@@ -58,13 +59,9 @@ std::string range(const std::vector<std::string>& only, const std::string& least
 {
     std::string text = most.empty() ? least : fmt::format("{} to {}", least, most);
     if (most.empty() && !least.empty() && !least.starts_with("above")) text += " or more";
-    if (!only.empty())
-    {
-        text.clear();
-        for (const std::string& one : only) text += (text.empty() ? "" : ", ") + one;
-    }
-    if (!unit.empty()) text.append(" ").append(unit);
-    if (!also.empty()) text.append(", ").append(also);
+    if (!only.empty()) text = listed(only);
+    if (!unit.empty()) text += fmt::format(" {}", unit);
+    if (!also.empty()) text += fmt::format(", {}", also);
     return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 #include "scene/builtin_town.h"
 #include "scene/mesh_builder.h"
 
@@ -288,9 +289,8 @@ Result<Scene> makeBuiltinScene(std::string_view name)
     if (name == "hall") return makeHall();
     if (name == "town") return makeTown();
     if (name == "plain") return makePlain();
-    std::string known;
-    for (const BuiltinScene& scene : builtinScenes()) known += (known.empty() ? "" : ", ") + scene.name;
-    return Error{ErrorCode::badArgument, fmt::format("There is no built-in scene named '{}'; use one of {}.", name, known)};
+    return Error{ErrorCode::badArgument,
+                 fmt::format("There is no built-in scene named '{}'; use one of {}.", name, listed(builtinScenes(), &BuiltinScene::name))};
 }
 
 } // namespace sconce

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
 
@@ -317,13 +318,9 @@ void SceneOptions::addLight(CLI::App* command)
 
 Result<Scene> SceneOptions::load(const Context& context) const
 {
-    std::string builtinNames;
-    bool builtin = false;
-    for (const BuiltinScene& each : builtinScenes())
-    {
-        builtin = builtin || each.name == name;
-        builtinNames += (builtinNames.empty() ? "" : ", ") + std::string(each.name);
-    }
+    const std::vector<BuiltinScene> known = builtinScenes();
+    const std::string builtinNames = listed(known, &BuiltinScene::name);
+    const bool builtin = std::ranges::find(known, name, &BuiltinScene::name) != known.end();
     const std::filesystem::path path(name);
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -377,12 +374,9 @@ Result<Camera> CameraOptions::choose(const Scene& scene) const
     if (scene.cameras.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no camera; give --eye and --target.", scene.name)};
     if (name.empty()) return scene.cameras.front();
-    std::string known;
     for (size_t i = 0; i < scene.cameras.size(); ++i)
-    {
         if (scene.cameras[i].name == name || fmt::to_string(i) == name) return scene.cameras[i];
-        known += (known.empty() ? "" : ", ") + scene.cameras[i].name;
-    }
+    const std::string known = listed(scene.cameras, &Camera::name);
     return Error{ErrorCode::badArgument,
                  fmt::format("The scene '{}' has no camera '{}'; it has: {}.", scene.name, name, known.empty() ? "none" : known)};
 }

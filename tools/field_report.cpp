@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 #include "bench/opponents/baselines.h"
 #include "runtime/bake/prefilter.h"
 #include "runtime/field/light_field_file.h"
@@ -112,8 +113,7 @@ void addTracer(CLI::App* command, std::string& tracer)
 {
     std::vector<std::string> names{"ours"};
     for (Baseline baseline : kBaselines) names.emplace_back(baselineName(baseline));
-    std::string spelled;
-    for (const std::string& name : names) spelled += (spelled.empty() ? "" : "|") + name;
+    const std::string spelled = listed(names, {}, "|");
     command
         ->add_option("--tracer", tracer,
                      described("ours, or an opponent: b0 (McGuire et al. 2017 as published) and b0plus (its defects mended) on a grid of "

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 namespace sconce::tools
 {
 
@@ -13,9 +14,7 @@ namespace
 
 std::string joined(const std::vector<std::string>& names)
 {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
-    return text;
+    return listed(names, {}, ","); // as --aov takes them
 }
 
 } // namespace

@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 namespace sconce::tools
 {
 
 void QualityOption::add(CLI::App* to)
 {
     command = to;
-    std::string levels;
-    for (const QualityLevel& level : qualityLevels()) levels.append(levels.empty() ? "" : ", ").append(level.name);
     to->add_option("--quality", text,
-                   described(fmt::format("A file of `sconce tune`, or {}: sets what the other options don't", levels),
+                   described(fmt::format("A file of `sconce tune`, or {}: sets what the other options don't",
+                                         listed(qualityLevels(), &QualityLevel::name)),
                              words("the other options' defaults")))
         ->type_name("FILE|LEVEL");
 }

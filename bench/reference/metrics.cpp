@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 #include "bench/reference/flip.h"
 
 namespace sconce
@@ -43,8 +44,7 @@ std::vector<float> asRgb(const Layer& layer)
 Result<const Layer*> findLayer(const ImageSet& images, const std::string& name, const char* which)
 {
     if (const Layer* layer = images.find(name)) return layer;
-    std::string names;
-    for (const Layer& layer : images.layers) names += (names.empty() ? "" : ", ") + layer.name;
+    const std::string names = listed(images.layers, &Layer::name);
     return Error{ErrorCode::badInput, fmt::format("{} has no layer '{}'; it has: {}", which, name, names.empty() ? "none" : names)};
 }
 
@@ -160,9 +160,11 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
         }
     if (whole && parts.size() == std::size(kParts))
     {
-        if (settings.mse) result.mse = meanSquaredError(left, parts[0], parts[1]).value;
+        // Never below what is unsure of it: a difference that can't be told from none is not one below 0.
+        const Estimate square = meanSquaredError(left, parts[0], parts[1]);
+        if (settings.mse) result.mse = std::max(square.value, square.unsure);
         const Estimate relative = relativeMeanSquaredError(left, parts[0], parts[1], parts[2]);
-        if (settings.relMse) result.relMse = relative.value, result.relMseUnsure = relative.unsure;
+        if (settings.relMse) result.relMse = std::max(relative.value, relative.unsure), result.relMseUnsure = relative.unsure;
     }
     if (settings.mean) result.mean = whole ? meanOverMean(left, right) : nan;
     if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, exposure) : nan;

@@ -59,7 +59,8 @@ struct CompareResult
 };
 
 /// Compares a layer of two pictures of equal size. Where the reference has the layer's parts (ReferenceSettings::parts), MSE and relMSE
-/// are without its noise. Errors: badInput names the layer, the sizes, or the reference's non-finite pixels.
+/// are without its noise, but for what that leaves unsure: they are no less. Errors: badInput names the layer, the sizes, or the
+/// reference's non-finite pixels.
 Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings = {});
 
 /// The map in false colours from black over purple to yellow (magma, Smith and van der Walt 2015), as linear RGB for writePng.

@@ -117,8 +117,7 @@ std::string ratioText(const Json& ratios, std::string_view but = "")
         {"memory", "the memory"},   {"wrong_rays", "the wrong rays"}, {"probes", "the probes"}};
     std::string text;
     for (const auto& [key, words] : parts)
-        if (key != but && ratios[key].is_number())
-            text.append(text.empty() ? "" : ", ").append(times(ratios[key])).append(" ").append(words);
+        if (key != but && ratios[key].is_number()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", times(ratios[key]), words);
     return text;
 }
 
@@ -251,8 +250,8 @@ Json pricesOf(const Points& ours, const Json& base)
             std::string sentence = fmt::format("{} {}: {} {}", (*point)["knob"].get<std::string>(), (*point)["value"].get<std::string>(),
                                                times(error), nameOfKey(key));
             if (const std::string rest = ratioText(ratios, "error"); !rest.empty()) sentence += fmt::format(", {}", rest);
-            if (halving) sentence.append("; at this rate, halving the error costs ").append(times(*halving)).append(" the time");
-            if (halving && memory) sentence.append(" and ").append(times(*memory)).append(" the memory");
+            if (halving) sentence += fmt::format("; at this rate, halving the error costs {} the time", times(*halving));
+            if (halving && memory) sentence += fmt::format(" and {} the memory", times(*memory));
             prices.push_back({{"knob", (*point)["knob"]},
                               {"error_key", std::string(key)},
                               {"from", idOf(base)},
@@ -442,7 +441,7 @@ std::vector<std::string> answersOf(const Json& results)
             const std::string where =
                 fmt::format("{} (against {})", scene["name"].get<std::string>(), methodName((*worst)["method"].get<std::string>()));
             if (unreached)
-                missed += (missed.empty() ? " in " : ", in ") + where;
+                missed += fmt::format("{}{}", missed.empty() ? " in " : ", in ", where);
             else
                 reached += fmt::format("{}{} as much in {}", reached.empty() ? " " : "; ", times((*worst)["ratio"][question.ratio]), where);
         }

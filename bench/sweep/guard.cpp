@@ -83,7 +83,8 @@ std::vector<std::string> worsened(const Json& guard, const Json& scene, const st
             sentences.push_back(fmt::format("{}not measured; the baseline has it.", where));
             continue;
         }
-        if (now->contains("wrong") && (*now)["wrong"].is_string()) sentences.push_back(where + (*now)["wrong"].get<std::string>());
+        if (now->contains("wrong") && (*now)["wrong"].is_string())
+            sentences.push_back(fmt::format("{}{}", where, (*now)["wrong"].get<std::string>()));
         for (const Json& margin : guard["margins"])
         {
             const std::string name = margin["figure"];

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 namespace sconce
 {
 namespace
@@ -63,8 +64,7 @@ Result<Json> tune(const std::vector<Json>& points, const TuneGoal& goal)
         return Error{ErrorCode::badInput, "No point of ours has the figures that are asked for; measure the scene with `sconce bench`."};
     std::string has;
     for (const std::string_view name : {std::string_view("frame_ms"), std::string_view(goal.metric), std::string_view("bytes")})
-        if (const auto figure = figureOf(*nearest, name))
-            has.append(has.empty() ? "" : ", ").append(name).append(" ").append(number(*figure));
+        if (const auto figure = figureOf(*nearest, name)) has += fmt::format("{}{} {}", has.empty() ? "" : ", ", name, number(*figure));
     return Error{ErrorCode::badInput,
                  fmt::format("No measured settings keep to that; the nearest, {}, have {}.", (*nearest)["id"].get<std::string>(), has)};
 }
@@ -100,11 +100,8 @@ Result<PointSettings> loadQuality(const std::string& fileOrLevel)
         return settings;
     }
     if (!std::filesystem::exists(fileOrLevel))
-    {
-        std::string names;
-        for (const QualityLevel& level : qualityLevels()) names.append(names.empty() ? "" : ", ").append(level.name);
-        return Error{ErrorCode::badArgument, fmt::format("--quality: '{}' is neither a file nor a level ({}).", fileOrLevel, names)};
-    }
+        return Error{ErrorCode::badArgument, fmt::format("--quality: '{}' is neither a file nor a level ({}).", fileOrLevel,
+                                                         listed(qualityLevels(), &QualityLevel::name))};
     std::ifstream stream(fileOrLevel);
     if (!stream) return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read.", fileOrLevel)};
     const Json json = Json::parse(stream, nullptr, false);

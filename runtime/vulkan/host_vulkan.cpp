@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/listed.h"
 namespace sconce
 {
 
@@ -300,12 +301,8 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
     // Before the device is made: vkCreateDevice refuses without saying which feature is absent.
     const std::vector<std::string> missing = missingFeatures(vkGetInstanceProcAddr, host.instance, *chosen);
     if (!missing.empty())
-    {
-        std::string list;
-        for (const std::string& name : missing) list += (list.empty() ? "" : ", ") + name;
         return Error{ErrorCode::missingFeature, fmt::format("The device {} lacks {}; update its driver or choose another device",
-                                                            propertiesOf(host.instance, *chosen).deviceName, list)};
-    }
+                                                            propertiesOf(host.instance, *chosen).deviceName, listed(missing))};
     bool timestamps = false;
     host.queueFamily = uint32_t(usableFamily(vkGetInstanceProcAddr, host.instance, *chosen, timestamps));
     const float priority = 1.0f;

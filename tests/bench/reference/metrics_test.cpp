@@ -137,6 +137,27 @@ TEST(Metrics, PartsTakeTheReferencesNoiseOutOfErrors)
     EXPECT_FALSE(without->relMseUnsure);
 }
 
+/// The truth itself against noisy parts: as large as what is unsure, whatever the signs that chance gave.
+TEST(Metrics, ErrorsAreNeverLessThanWhatIsUnsure)
+{
+    for (uint64_t seed = 0; seed < 8; ++seed)
+    {
+        ImageSet picture, reference;
+        for (ImageSet* images : {&picture, &reference}) images->width = images->height = 8;
+        picture.add("beauty", 3);
+        for (const char* name : {"beauty", "beauty_a", "beauty_b", "beauty_c"}) reference.add(name, 3);
+        Random random(seed, 2);
+        for (Layer& layer : reference.layers)
+            for (float& value : layer.pixels) value = 0.5f + 0.2f * (random.uniform() - 0.5f);
+        for (float& value : picture.layers[0].pixels) value = 0.5f;
+        const auto compared = compareImages(picture, reference);
+        ASSERT_TRUE(compared) << compared.error().message;
+        EXPECT_GE(*compared->relMse, *compared->relMseUnsure);
+        EXPECT_GT(*compared->mse, 0.0);
+        EXPECT_LT(*compared->relMse, 4.0 * *compared->relMseUnsure);
+    }
+}
+
 TEST(Metrics, DamagedPartsAreRefused)
 {
     ImageSet picture;

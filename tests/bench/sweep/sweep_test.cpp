@@ -49,7 +49,7 @@ std::unique_ptr<SceneBench> benchOfCornell(ValidatedDevice& device, const TestFo
     desc.settings.height = 18;
     desc.settings.rays = 500;
     desc.settings.frames = desc.settings.warmUp = 1;
-    desc.settings.referencePaths = 2;
+    desc.settings.referencePaths = 4;
     desc.settings.pictures = false;
     auto bench = SceneBench::create(device.gpu(), "device", std::move(desc), first.settings, {});
     EXPECT_TRUE(bench) << bench.error().message;
