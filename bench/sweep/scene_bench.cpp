@@ -483,11 +483,13 @@ Result<Json> SceneBench::writePictures(const PlannedPoint& point, const Rendered
     const ImageSet layers = lightLayers(frame);
     for (const auto& [name, layer] : kLayers)
     {
+        if (point.settings.volume() && std::string_view(name) == "glossy") continue;
         const std::string file = fmt::format("{}{}.half", stem, name);
         if (auto status = writeHalfPicture(desc.folder / file, frame.width, frame.height, layers.find(layer)->pixels); !status)
             return status.error();
         json[name] = file;
     }
+    if (point.settings.volume()) return json; // no ray was traced that could be counted
     const char* const counts[] = {"probe", "handoffs", "reads", "unresolved"};
     for (int part = 0; part < 4; ++part)
     {
