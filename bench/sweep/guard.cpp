@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -31,6 +32,12 @@ std::string number(double value)
     return text;
 }
 
+std::optional<std::string> wrongOf(const Json& point)
+{
+    if (!point.contains("wrong") || !point["wrong"].is_string()) return std::nullopt;
+    return point["wrong"].get<std::string>();
+}
+
 } // namespace
 
 Json emptyGuard()
@@ -49,6 +56,7 @@ Json guardedScene(const std::string& name, const std::string& source, const Json
         Json kept = {{"id", point["id"]}};
         for (const Margin& margin : kMargins)
             if (const auto figure = figureOf(point, margin.figure)) kept[margin.figure] = *figure;
+        if (wrongOf(point)) kept["wrong"] = *wrongOf(point);
         scene["points"].push_back(std::move(kept));
     }
     return scene;
@@ -83,8 +91,8 @@ std::vector<std::string> worsened(const Json& guard, const Json& scene, const st
             sentences.push_back(fmt::format("{}not measured; the baseline has it.", where));
             continue;
         }
-        if (now->contains("wrong") && (*now)["wrong"].is_string())
-            sentences.push_back(fmt::format("{}{}", where, (*now)["wrong"].get<std::string>()));
+        // An opponent may be as wrong as it was: its figures below judge it.
+        if (const auto wrong = wrongOf(*now); wrong && !wrongOf(before)) sentences.push_back(fmt::format("{}{}", where, *wrong));
         for (const Json& margin : guard["margins"])
         {
             const std::string name = margin["figure"];

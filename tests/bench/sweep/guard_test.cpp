@@ -55,6 +55,8 @@ TEST(Guard, WhatIsMissingOrWrongIsWorse)
     Json black = point(20.0, 0.98, 1000.0, 0.05);
     black["wrong"] = "black.";
     EXPECT_EQ(worseThan(black), std::vector<std::string>{"room, ours/default: black."});
+    const Json wrongBefore = guardedScene("room", "room.glb", Json::object(), {black});
+    EXPECT_TRUE(worsened(emptyGuard(), wrongBefore, {black}).empty()); // an opponent is no worse by being as wrong as it was
     Json infinite = point(20.0, 0.98, 1000.0, 0.05);
     infinite["error"]["glossy"]["relmse"] = nullptr; // how a picture that is not finite comes out
     EXPECT_EQ(worseThan(infinite).size(), 1u);
