@@ -44,6 +44,7 @@ std::string methodName(std::string_view method)
                                                                     {"ddgi-placed", "DDGI on Sconce's probes"},
                                                                     {"sh-grid", "a grid of spherical harmonics"},
                                                                     {kPathTracer, "the path tracer"},
+                                                                    {kFilteredPaths, "the path tracer with our filters"},
                                                                     {"ours-grid", "Sconce's tracer on the uniform grid"}};
     const auto found = names.find(method);
     return std::string(found == names.end() ? method : found->second);
@@ -377,12 +378,12 @@ Json analyseScene(const std::vector<Json>& points)
     Json analysis = {{"fronts", Json::object()}, {"equal", Json::array()}, {"prices", Json::array()}, {"breaks", breaksOf(points, base)}};
     for (const std::string_view error : kErrors)
         for (const std::string_view cost : kCosts) analysis["fronts"][fmt::format("{}|{}", error, cost)] = paretoFront(all, error, cost);
-    // Tracers are compared by what placement, bake and trace bring, the path tracer by whole frames: filters are no merit of a tracer, but
+    // Tracers are compared by what placement, bake and trace bring, path tracers by whole frames: filters are no merit of a tracer, but
     // are one of the frame.
     Tables tables(oursTraced, base), pathTables(ours, base);
     for (auto& [opponent, theirs] : opponents)
     {
-        if (opponent == kPathTracer)
+        if (opponent == kPathTracer || opponent == kFilteredPaths)
         {
             for (const Json* point : theirs) pathTables.compareWith(opponent, {}, *point);
             continue;
@@ -424,7 +425,7 @@ std::vector<std::string> answersOf(const Json& results)
             for (const Json& row : scene["analysis"]["equal"])
             {
                 const std::string method = row["method"];
-                if (row["what"] != question.what || row["error_key"] != question.key || method == kPathTracer ||
+                if (row["what"] != question.what || row["error_key"] != question.key || method == kPathTracer || method == kFilteredPaths ||
                     (question.cost && row["cost_key"] != question.cost) || !row["theirs"].get<std::string>().ends_with("/default"))
                     continue;
                 // A scene where nothing of ours is good enough counts as such, however well others went.

@@ -115,10 +115,13 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         theirs.push_back(point);
         planner.addDefault(point);
     }
-    PointSettings paths = ours;
-    paths.method = kPathTracer;
-    planner.addDefault(paths);
-    for (const std::string_view value : findKnob("paths")->sweep) planner.addVaried(paths, *findKnob("paths"), std::string(value));
+    for (const char* method : {kPathTracer, kFilteredPaths})
+    {
+        PointSettings paths = ours;
+        paths.method = method;
+        planner.addDefault(paths);
+        for (const std::string_view value : findKnob("paths")->sweep) planner.addVaried(paths, *findKnob("paths"), std::string(value));
+    }
     if (settings.methodsOnly) return std::move(planner.points);
 
     planner.addProbeCounts(ours, {0.25, 0.5, 2.0});

@@ -9,8 +9,10 @@
 #include <sys/resource.h>
 
 #include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "base/safe_file.h"
+#include "bench/opponents/traced_picture.h"
 #include "bench/race/ray_file.h"
 #include "bench/race/scene_rays.h"
 #include "bench/reference/metrics.h"
@@ -342,9 +344,13 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
     Live live;
     live.plan = &point;
     const PointSettings& settings = point.settings;
-    if (settings.pathTraced()) return live;
+    if (settings.pathTraced() && !settings.filteredPaths()) return live;
     const std::optional<Volume> volume = settings.volume();
-    if (auto status = volume ? makeVolume(live, *volume, progress) : makeTracer(live, progress); !status) return status.error();
+    if (auto status = settings.filteredPaths() ? makePicture(live, progress)
+                      : volume                 ? makeVolume(live, *volume, progress)
+                                               : makeTracer(live, progress);
+        !status)
+        return status.error();
     RenderSettings frame = settings.frame;
     frame.width = desc.settings.width;
     frame.height = desc.settings.height;
@@ -361,9 +367,10 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
         frame.lightShaders.gather = volumePass(*volume);
         frame.effects.rough = frame.effects.glossy = frame.effects.mirror = false; // it holds none
     }
+    if (settings.filteredPaths()) showPaths(frame, settings.paths);
     auto scene = sceneOf(frame.effects, progress);
     if (!scene) return scene.error();
-    auto renderer = SceneRenderer::create(gpu, **scene, volume ? *live.volume : live.tracer->lightField(), frame);
+    auto renderer = SceneRenderer::create(gpu, **scene, live.untraced ? *live.untraced : live.tracer->lightField(), frame);
     if (!renderer) return renderer.error();
     live.renderer = std::move(*renderer);
     return live;
@@ -387,6 +394,17 @@ Status SceneBench::makeTracer(Live& live, const Progress& progress)
     return success();
 }
 
+Status SceneBench::makePicture(Live& live, const Progress& progress)
+{
+    auto picture = renderReference(*truth, pathSettings(*live.plan), progress);
+    if (!picture) return picture.error();
+    live.paths = std::move(picture->images);
+    auto light = makeLightField(gpu, tracedPicture(desc.scene, live.paths));
+    if (!light) return light.error();
+    live.untraced.emplace(std::move(*light));
+    return success();
+}
+
 Status SceneBench::makeVolume(Live& live, Volume volume, const Progress& progress)
 {
     auto field = volumeFor(live.plan->settings, volume, live.fieldCost, progress);
@@ -395,7 +413,7 @@ Status SceneBench::makeVolume(Live& live, Volume volume, const Progress& progres
     live.fieldCost["bytes"] = bytesJson(bytesByPart(*field));
     auto light = makeLightField(gpu, *field);
     if (!light) return light.error();
-    live.volume.emplace(std::move(*light));
+    live.untraced.emplace(std::move(*light));
     return success();
 }
 
@@ -439,7 +457,7 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     Json json = {{"id", point.id}, {"method", point.settings.method}, {"knob", point.knob}, {"value", point.value}};
     json["settings"] = settingsJson(point.settings);
     json["clock"] = point.settings.pathTraced() || software() ? "cpu" : "device";
-    if (point.settings.pathTraced())
+    if (point.settings.pathTraced() && !live.renderer)
     {
         auto picture = renderReference(*truth, pathSettings(point), progress);
         if (!picture) return picture.error();
@@ -461,10 +479,14 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     const uint32_t frames = point.settings.frame.effects.temporal ? kTemporalFrames : 1;
     for (uint32_t i = 1; i < frames && frame; ++i) frame = live.renderer->render(camera, i);
     if (!frame) return frame.error();
+    if (point.settings.filteredPaths()) // direct light and emission are the paths' own: there is nothing to filter
+        for (size_t i = 0; i < frame->beauty.size(); ++i)
+            frame->beauty[i] =
+                glm::make_vec3(&live.paths.find("direct")->pixels[3 * i]) + frame->diffuseIndirect[i] + frame->glossyIndirect[i];
     auto errors = errorsOf(lightLayers(*frame));
     if (!errors) return errors.error();
     json["error"] = std::move(*errors);
-    if (live.volume) json["error"].erase("glossy"); // no reflections: compared by diffuse light and the whole picture
+    if (point.settings.volume()) json["error"].erase("glossy"); // no reflections: compared by diffuse light and the whole picture
     json["wrong"] = wrongness(json, referenceImages.find("beauty")->pixels);
     if (desc.settings.pictures && point.knob == "default")
     {
@@ -479,7 +501,9 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
 Result<Json> SceneBench::writePictures(const PlannedPoint& point, const RenderedFrame& frame)
 {
     Json json = Json::object();
-    const std::string stem = fmt::format("images/{}.{}.", desc.name, point.settings.method);
+    std::string method = point.settings.method;
+    std::ranges::replace(method, ' ', '-');
+    const std::string stem = fmt::format("images/{}.{}.", desc.name, method);
     const ImageSet layers = lightLayers(frame);
     for (const auto& [name, layer] : kLayers)
     {
@@ -489,7 +513,7 @@ Result<Json> SceneBench::writePictures(const PlannedPoint& point, const Rendered
             return status.error();
         json[name] = file;
     }
-    if (point.settings.volume()) return json; // no ray was traced that could be counted
+    if (point.settings.volume() || point.settings.pathTraced()) return json; // no ray was traced that could be counted
     const char* const counts[] = {"probe", "handoffs", "reads", "unresolved"};
     for (int part = 0; part < 4; ++part)
     {
@@ -521,8 +545,9 @@ Result<SceneBench::Passes> SceneBench::timeFrame(Live& live, uint32_t turn)
         auto picture = renderReference(*truth, paths);
         if (!picture) return picture.error();
         passes.emplace_back("path tracing", milliseconds());
-        return passes;
+        if (!live.renderer) return passes;
     }
+    const double before = milliseconds();
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
@@ -530,15 +555,15 @@ Result<SceneBench::Passes> SceneBench::timeFrame(Live& live, uint32_t turn)
             live.renderer->record(cmd, camera, turn + 1, &*timer);
         });
     if (!status) return status.error();
-    const double used = milliseconds();
+    const double used = milliseconds() - before;
     double sum = 0.0;
-    for (const GpuTimer::Scope& scope : timer->read())
-    {
-        passes.emplace_back(scope.name, scope.milliseconds);
-        sum += scope.milliseconds;
-    }
-    if (software() && sum > 0.0) // its clock also runs while the cores work for others
-        for (auto& [name, time] : passes) time *= used / sum;
+    const std::vector<GpuTimer::Scope> scopes = timer->read();
+    for (const GpuTimer::Scope& scope : scopes) sum += scope.milliseconds;
+    // Software's clock also runs while the cores work for others.
+    const double share = software() && sum > 0.0 ? used / sum : 1.0;
+    for (const GpuTimer::Scope& scope : scopes)
+        if (!live.plan->settings.pathTraced() || std::string_view(scope.name).ends_with("denoise"))
+            passes.emplace_back(scope.name, share * scope.milliseconds);
     return passes;
 }
 

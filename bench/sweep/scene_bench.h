@@ -60,13 +60,15 @@ public:
     /// Draws the rays; once, before anything below.
     Status prepare();
 
-    /// A point on the device, ready to be measured and timed. The path tracer's has neither tracer nor renderer, a volume's no tracer.
+    /// A point on the device, ready to be measured and timed. Of path tracers, only the filtered path tracer has a renderer, a volume has
+    /// no tracer.
     struct Live
     {
         const PlannedPoint* plan = nullptr;
-        Json fieldCost; // probe_set, bytes, bake_s, place_s, ...
+        Json fieldCost = Json::object(); // probe_set, bytes, bake_s, place_s, ...
         std::unique_ptr<TracedMethod> tracer;
-        std::optional<LightField> volume; // in the tracer's place
+        std::optional<LightField> untraced; // in the tracer's place: a volume's, or a path tracer's picture
+        ImageSet paths;                     // of the filtered path tracer
         std::unique_ptr<SceneRenderer> renderer;
     };
     Result<Live> enliven(const PlannedPoint& point, const Progress& progress);
@@ -96,6 +98,7 @@ private:
     Result<FieldData> fieldFor(const PointSettings& settings, Json& cost, const Progress& progress);
     Result<FieldData> volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress);
     Status makeTracer(Live& live, const Progress& progress);
+    Status makePicture(Live& live, const Progress& progress);
     Status makeVolume(Live& live, Volume volume, const Progress& progress);
     Status makeTruth();
     Result<const DeviceScene*> sceneOf(const IndirectEffects& effects, const Progress& progress);

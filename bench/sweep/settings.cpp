@@ -80,8 +80,8 @@ std::vector<SweptKnob> makeKnobs()
 {
     const std::vector<std::string_view> ours{"ours"}, tracers{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
         opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang", "ddgi-placed"},
-        paths{kPathTracer}, fields{"ours", "ours-grid"}, volumes{"ddgi", "ddgi-placed", "sh-grid"}, placed = all(tracers, volumes),
-                                                                                                    mapped = all(tracers, {"ddgi-placed"});
+        paths{kPathTracer, kFilteredPaths}, fields{"ours", "ours-grid"}, volumes{"ddgi", "ddgi-placed", "sh-grid"},
+        placed = all(tracers, volumes), mapped = all(tracers, {"ddgi-placed"});
     using enum Stage;
     return {
         knob("probes", place, placed, {}, knobs::benchProbes, SCONCE_FIELD(probes)),

@@ -20,6 +20,7 @@ namespace sconce
 using Json = nlohmann::ordered_json;
 
 inline constexpr const char* kPathTracer = "path tracer";
+inline constexpr const char* kFilteredPaths = "path tracer filtered"; // its picture through our filters
 
 /// Everything that one point of the bench is measured with, but its scene and picture. The defaults are ours.
 struct PointSettings
@@ -37,7 +38,8 @@ struct PointSettings
     RenderSettings frame;
     uint32_t paths = knobs::tracedPaths.value; // a pixel, of the path tracer
 
-    bool pathTraced() const { return method == kPathTracer; }
+    bool filteredPaths() const { return method == kFilteredPaths; }
+    bool pathTraced() const { return method == kPathTracer || filteredPaths(); }
     std::optional<Baseline> opponent() const { return baselineNamed(method); }
     std::optional<Volume> volume() const { return volumeNamed(method); }
     uint32_t chart() const; // that the method reads

@@ -1,9 +1,9 @@
 // What a placement is worth beside its yardstick, in one run and on the same samples:
-//   sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX]
+//   sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX] [--seed N]
 // Rows: yardstick, grid, skeleton (alone), chosen (greedy and exchange), relocated (chosen and relocated), gradient, gibbs, stochastic
-// (that and refined so; gradient is what `sconce place` does), balls (chosen with the other skeleton), bound (what any legal position at
-// all sees). Each line: coverage of ray hits and of area in per cent, cosine and distance of the best view (medians), seconds. --save
-// writes PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
+// (that and refined so; gradient is what `sconce place` does), balls (chosen with the other skeleton), refined (chosen and refined by
+// gradient), bound (what any legal position at all sees). Each line: coverage of ray hits and of area in per cent, cosine and distance of
+// the best view (medians), seconds. --save writes PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -66,6 +66,7 @@ struct Table
     const FreeSpace& space;
     std::string savePrefix;
     std::vector<std::string> rows; // empty: all
+    uint64_t seed = 1;
 
     bool wants(const std::string& row) const { return rows.empty() || std::find(rows.begin(), rows.end(), row) != rows.end(); }
 
@@ -110,6 +111,7 @@ struct Table
         settings.count = count;
         settings.method = method;
         settings.refine = refine;
+        settings.seed = seed;
         PlaceReport report;
         return placeProbes(scene, settings, report);
     }
@@ -131,8 +133,8 @@ struct Table
 
     int run(uint32_t count) const
     {
-        int failures =
-            line("yardstick", count, [&] { return Result<ProbeSet>(setOf(test::yardstickProbes(visibility, space, count, 7), "greedy")); });
+        int failures = line("yardstick", count,
+                            [&] { return Result<ProbeSet>(setOf(test::yardstickProbes(visibility, space, count, 6 + seed), "greedy")); });
         failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid, Refine::none, false); });
         failures += line("skeleton", count,
                          [&]
@@ -147,6 +149,7 @@ struct Table
             {"relocated", Refine::none}, {"gradient", Refine::gradient}, {"gibbs", Refine::gibbs}, {"stochastic", Refine::stochastic}};
         for (const auto& [name, refine] : refinements)
             failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine, true); });
+        failures += line("refined", count, [&] { return ours(count, PlaceSettings::Method::sdf, Refine::gradient, false); });
         failures += line("balls", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::none, false); });
         return failures;
     }
@@ -164,11 +167,14 @@ int main(int argc, char** argv)
         return value;
     };
     const std::string prefix = option("--save");
+    const std::string seed = option("--seed");
     std::istringstream list(option("--rows"));
     std::vector<std::string> rows;
     for (std::string row; std::getline(list, row, ',');) rows.push_back(row);
     if (words.size() < 2)
-        return std::fprintf(stderr, "usage: sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX]\n"), 2;
+        return std::fprintf(stderr, "usage: sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX] "
+                                    "[--seed N]\n"),
+               2;
     Result<Scene> scene = words[0].find('.') == std::string::npos ? makeBuiltinScene(words[0]) : loadGltf(words[0]);
     if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 3;
     Result<Visibility> visibility = Visibility::build(*scene);
@@ -181,7 +187,7 @@ int main(int argc, char** argv)
                 double(visibility->bounds().size().x) * double(visibility->bounds().size().y) * double(visibility->bounds().size().z),
                 double(space->field.voxel), none ? 100.0 * double(none->backs) : 0.0);
     std::printf("method     probes     rays    area  cosine  metres  quality  seconds    cpu\n");
-    const Table table{*scene, *visibility, *space, prefix, rows};
+    const Table table{*scene, *visibility, *space, prefix, rows, seed.empty() ? 1 : std::strtoull(seed.c_str(), nullptr, 10)};
     table.bound();
     int failures = 0;
     for (size_t word = 1; word < words.size(); ++word) failures += table.run(uint32_t(std::strtoul(words[word].c_str(), nullptr, 10)));

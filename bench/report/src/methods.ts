@@ -1,8 +1,8 @@
 // A colour and a shape for each method: the same everywhere, told apart without colour, too.
 import { svg } from "./dom";
 
-const kKnown = ["ours", "ours-grid", "b0plus", "b0plus-octree", "b0", "wang", "path tracer", "ddgi", "ddgi-placed", "sh-grid"];
-const kColours = 10; // --method-0 ... in style.css
+const kKnown = ["ours", "ours-grid", "b0plus", "b0plus-octree", "b0", "wang", "path tracer", "ddgi", "ddgi-placed", "sh-grid", "path tracer filtered"];
+const kColours = 11; // --method-0 ... in style.css
 
 // Outlines in a box from -1 to 1.
 const kShapes = [
@@ -16,6 +16,7 @@ const kShapes = [
     "M-1-.5L-.5-1L0-.5L.5-1L1-.5L.5 0L1 .5L.5 1L0 .5L-.5 1L-1 .5L-.5 0Z",
     "M-1.1-.5H1.1V.5H-1.1Z",
     "M-.5-1.1H.5V1.1H-.5Z",
+    "M-1-1L1-1L-1 1L1 1Z",
 ];
 
 export interface MethodStyle {

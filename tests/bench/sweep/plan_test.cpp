@@ -34,7 +34,7 @@ TEST(Plan, BeginsWithOursAndHasEveryMethodAndKnobOnce)
         if (point.settings.method == "ours") knobsOfOurs.insert(point.knob);
     }
     EXPECT_EQ(methods, (std::set<std::string>{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", "ddgi", "ddgi-placed",
-                                              "sh-grid", "path tracer"}));
+                                              "sh-grid", "path tracer", "path tracer filtered"}));
     for (const SweptKnob& knob : sweptKnobs())
         EXPECT_EQ(knobsOfOurs.contains(std::string(knob.name)), std::ranges::find(knob.methods, "ours") != knob.methods.end()) << knob.name;
 }
