@@ -1,13 +1,13 @@
 // One probe of baseline W': Wang et al. 2019, "Fast Non-uniform Radiance Probe Placement and Tracing", section 4.2, rebuilt: a min/max
 // chain made per cube face, each level resampled to the octahedral map, marched along the octants' straight lines. What the paper leaves
-// open is chosen thus: the hit rule, the ray's radial distance and the hand-over are B0+'s; a segment starts at level 4, climbs a level
+// open is chosen thus: the hit rule, the ray's radial distance and the hand-over are B0+'s; a segment starts where reads are fewest, climbs a level
 // when it leaves a cell through a border of the coarser one (Uludag 2014 climbs after every free cell: more reads), and goes down a level
 // where a cell's minimum blocks; a cell whose maximum lies nearer than the ray by more than the greatest thickness ends the probe as
 // UNKNOWN at once; levels of fewer than 8 cells a side are left out.
 // Words of a probe: level 0 (radial distance, normal) as in the plain octahedral chart, then levels 1, 2, ... info.topLevel of (min r,
 // max r), rounded outward. Shared text, see baseline_b0.h.
 
-SCONCE_CONST int kWangStart = 4;
+SCONCE_CONST int kWangStartBelowTop = 4; // levels: the fewest reads of starts at 0 to 6, in the hall and the temple, with maps of 128, 256 and 512 texels
 SCONCE_CONST real kB0Thickest = real(0.97); // metres: the greatest value that the hit rule's thickness can take
 
 SCONCE_FN uint wangLevelOffset(int level)
@@ -49,7 +49,7 @@ SCONCE_FN real wangLeave(SCONCE_IN(B0Line) line, vec2 iP, ivec2 texel, int level
 
 SCONCE_FN bool wangSegment(SCONCE_INOUT(B0Ray) ray, SCONCE_IN(B0Line) line)
 {
-    int level = min(kWangStart, int(field.topLevel));
+    int level = max(int(field.topLevel) - kWangStartBelowTop, 0);
     ivec2 texel = wangFirstTexel(line);
     vec2 iP = vec2(abs(line.dP.x) > real(1e-9) ? real(1.0) / line.dP.x : real(-1e9), abs(line.dP.y) > real(1e-9) ? real(1.0) / line.dP.y : real(-1e9));
     real l = real(0.0);
