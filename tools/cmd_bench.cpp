@@ -226,7 +226,8 @@ int checkGuard(const BenchRun& run)
                                       {"id", point["id"]},
                                       {"trace_ms", numberOrNull(figureOf(point, "trace_ms").value_or(NAN))},
                                       {"reads", *figureOf(point, "reads")},
-                                      {"wrong_rays", *figureOf(point, "wrong_rays")}});
+                                      {"wrong_rays", *figureOf(point, "wrong_rays")},
+                                      {"wrong_rays_02", *figureOf(point, "wrong_rays_02")}});
     }
     addCost(json, watch);
     if (run.context.json)
@@ -234,7 +235,8 @@ int checkGuard(const BenchRun& run)
     else
         for (const Json& point : json["points"])
             std::cout << point["scene"].get<std::string>() << " " << point["id"].get<std::string>() << ": " << point["reads"]
-                      << " reads a ray, wrong rays " << point["wrong_rays"] << ", trace " << point["trace_ms"] << " ms" << std::endl;
+                      << " reads a ray, wrong rays within 1 % " << point["wrong_rays"] << ", within 0.2 % " << point["wrong_rays_02"]
+                      << ", trace " << point["trace_ms"] << " ms" << std::endl;
     for (const Json& sentence : json["worse"]) std::cerr << "sconce: " << sentence.get<std::string>() << std::endl;
     return json["worse"].empty() ? exitOk : exitThreshold;
 }

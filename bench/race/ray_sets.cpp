@@ -96,6 +96,7 @@ void sortByPlace(RaySet& set, const std::vector<uint64_t>& places)
     set.directions = inOrder(set.directions, order);
     set.normals = inOrder(set.normals, order);
     set.startCosine = inOrder(set.startCosine, order);
+    for (uint32_t i : order) set.viewpoints.push_back(uint32_t(places[i] >> 32));
     set.truth = inOrder(set.truth, order);
     set.fartherTruth = inOrder(set.fartherTruth, order);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 
 namespace sconce
 {
@@ -17,6 +18,30 @@ Spread spreadOf(std::vector<uint32_t> values)
     for (uint32_t v : values) sum += v;
     const auto rank = static_cast<size_t>(std::ceil(0.95 * static_cast<double>(values.size())));
     return {sum / static_cast<double>(values.size()), values[rank - 1], values.back()};
+}
+
+/// Standard error of a share of rays whose viewpoints, not whose rays, are independent: that of a ratio of sums over clusters (Cochran
+/// 1977, "Sampling Techniques", section 9A.2, all clusters as likely).
+double unsureByViewpoint(std::span<const uint32_t> viewpoints, const std::vector<bool>& counts)
+{
+    if (viewpoints.empty()) return 0.0;
+    struct Cluster
+    {
+        double rays = 0.0, counted = 0.0;
+    };
+    std::map<uint32_t, Cluster> clusters;
+    double all = 0.0;
+    for (size_t i = 0; i < viewpoints.size(); ++i)
+    {
+        Cluster& cluster = clusters[viewpoints[i]];
+        cluster.rays += 1.0;
+        if (counts[i]) cluster.counted += 1.0, all += 1.0;
+    }
+    const double rays = double(viewpoints.size()), number = double(clusters.size());
+    if (number < 2.0) return 0.0;
+    double squares = 0.0;
+    for (const auto& [viewpoint, cluster] : clusters) squares += std::pow(cluster.counted - all / rays * cluster.rays, 2.0);
+    return std::sqrt(squares * number / (number - 1.0)) / rays;
 }
 
 } // namespace
@@ -39,6 +64,7 @@ TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced, boo
     TraceScore score;
     score.rays = set.size();
     if (traced.empty()) return score;
+    std::vector<bool> near(traced.size()), exactly(traced.size());
     size_t verdicts[4]{}, exact = 0, assumed1 = 0, assumed02 = 0;
     const auto isExact = [&](size_t i) { return !truth[i].hit || std::abs(traced[i].t - truth[i].t) <= 0.002f * set.diagonal; };
     std::vector<uint32_t> handoffs, distanceReads, indexReads;
@@ -46,7 +72,9 @@ TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced, boo
     {
         const TraceVerdict verdict = judge(truth[i], traced[i], set.diagonal);
         ++verdicts[static_cast<size_t>(verdict)];
-        if (verdict == TraceVerdict::right) exact += isExact(i);
+        near[i] = verdict == TraceVerdict::right;
+        exactly[i] = near[i] && isExact(i);
+        if (exactly[i]) ++exact;
         TracedRay taken = traced[i];
         if (taken.status == TraceStatus::unknown) taken.status = TraceStatus::hit;
         if (judge(truth[i], taken, set.diagonal) == TraceVerdict::right) ++assumed1, assumed02 += isExact(i);
@@ -57,6 +85,8 @@ TraceScore scoreTraces(const RaySet& set, std::span<const TracedRay> traced, boo
     const auto share = [&](size_t count) { return static_cast<double>(count) / static_cast<double>(traced.size()); };
     score.right1 = share(verdicts[0]);
     score.right02 = share(exact);
+    score.right1Unsure = unsureByViewpoint(set.viewpoints, near);
+    score.right02Unsure = unsureByViewpoint(set.viewpoints, exactly);
     score.falseHit = share(verdicts[1]);
     score.leak = share(verdicts[2]);
     score.unresolved = share(verdicts[3]);

@@ -28,6 +28,7 @@ struct RaySet
     std::vector<vec3> directions;       // [n] unit
     std::vector<vec3> normals;          // [n] geometric normal of the surface they leave, on the ray's side; 0 when it is not known
     std::vector<float> startCosine;     // [n] with the surface they leave; below 0.05 (3 degrees) is a grazing start
+    std::vector<uint32_t> viewpoints;   // [n] that saw the surface they leave, ascending; or [0], where they have none
     std::vector<RayTruth> truth;        // [n]
     std::vector<RayTruth> fartherTruth; // [n] of the same rays begun kFartherStart further off; or [0], where no opponent asks
     float diagonal = 0.0f;              // of the scene, metres
@@ -74,6 +75,9 @@ struct TraceScore // shares of all rays, [0,1]
     size_t rays = 0;
     double right1 = 0.0;
     double right02 = 0.0; // within 0.2 % of the diagonal, or a true miss; part of right1
+    // Standard errors of these two. They count viewpoints, not rays: rays of one viewpoint fail together, so that more of them say little
+    // of other viewpoints. 0 with fewer than two.
+    double right1Unsure = 0.0, right02Unsure = 0.0;
     double falseHit = 0.0;
     double leak = 0.0;
     double unresolved = 0.0;

@@ -122,6 +122,8 @@ nlohmann::ordered_json toJson(const Row& row, size_t timed)
                      {"rays", s.rays},
                      {"right_1", s.right1},
                      {"right_02", s.right02},
+                     {"right_1_unsure", s.right1Unsure},
+                     {"right_02_unsure", s.right02Unsure},
                      {"false", s.falseHit},
                      {"leak", s.leak},
                      {"unresolved", s.unresolved},
@@ -145,22 +147,23 @@ nlohmann::ordered_json toJson(const Row& row, size_t timed)
 
 void printScores(std::span<const Row> rows, size_t rays, const std::string& device)
 {
-    std::printf(
-        "%zu rays, %s; per cent right within 1 %% and 0.2 %% of the diagonal, false, leak, unresolved; right if what is unresolved were a "
-        "hit where sight was lost, within both; reads a ray mean, p95, max; "
-        "MiB a probe that the trace reads, with radiance\n"
-        "tracer           probes     1 %%  0.2 %%  false  leak unres    1 %%  0.2 %%    mean   p95    max  index  hands   MiB  +rad  "
-        "field\n",
-        rays, device.c_str());
+    std::printf("%zu rays, %s; per cent right within 1 %% and 0.2 %% of the diagonal, both with their standard errors by viewpoint, false, "
+                "leak, unresolved; right if what is unresolved were a "
+                "hit where sight was lost, within both; reads a ray mean, p95, max; "
+                "MiB a probe that the trace reads, with radiance\n"
+                "tracer           probes     1 %%   +-   0.2 %%   +-   false  leak unres    1 %%  0.2 %%    mean   p95    max  index  "
+                "hands   MiB  +rad  "
+                "field\n",
+                rays, device.c_str());
     for (const Row& row : rows)
     {
         if (!row.method) continue;
         const TraceScore& s = row.score;
-        std::printf("%-16s %6u  %6.2f %6.2f  %5.2f %5.2f %5.2f  %5.2f  %5.2f  %6.1f %5u %6u  %5.1f  %5.2f  %4.2f  %4.2f  %s\n",
-                    row.name.c_str(), row.method->data().info.probeCount, 100 * s.right1, 100 * s.right02, 100 * s.falseHit, 100 * s.leak,
-                    100 * s.unresolved, 100 * s.assumed1, 100 * s.assumed02, s.distanceReads.mean, s.distanceReads.p95, s.distanceReads.max,
-                    s.indexReads.mean, s.handoffs.mean, row.method->traceMebibytes(),
-                    row.method->traceMebibytes() + row.method->radianceMebibytes(), row.file.c_str());
+        std::printf("%-16s %6u  %6.2f %4.2f  %6.2f %4.2f  %5.2f %5.2f %5.2f  %5.2f  %5.2f  %6.1f %5u %6u  %5.1f  %5.2f  %4.2f  %4.2f  %s\n",
+                    row.name.c_str(), row.method->data().info.probeCount, 100 * s.right1, 100 * s.right1Unsure, 100 * s.right02,
+                    100 * s.right02Unsure, 100 * s.falseHit, 100 * s.leak, 100 * s.unresolved, 100 * s.assumed1, 100 * s.assumed02,
+                    s.distanceReads.mean, s.distanceReads.p95, s.distanceReads.max, s.indexReads.mean, s.handoffs.mean,
+                    row.method->traceMebibytes(), row.method->traceMebibytes() + row.method->radianceMebibytes(), row.file.c_str());
         if (row.cpuDiffers) std::printf("        the CPU answers %zu of these %zu rays otherwise\n", *row.cpuDiffers, s.rays);
     }
 }

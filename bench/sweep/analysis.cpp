@@ -188,9 +188,12 @@ private:
     {
         const char* key = figureOf(their, "glossy.relmse") ? "glossy.relmse" : "diffuse.relmse"; // volumes have diffuse light alone
         const Json ratios = ratiosOf(*mine, their, key);
+        const Json exactly = ratio(*mine, their, "wrong_rays_02");
         add("probes", key, opponent, mine, their, ratios,
-            fmt::format("With {} probes against {} of {}, Sconce takes {}.", figure(*figureOf(*mine, "probes")),
-                        figure(*figureOf(their, "probes")), methodName(opponent), ratioText(ratios)));
+            fmt::format("With {} probes against {} of {}, Sconce takes {}{}.", figure(*figureOf(*mine, "probes")),
+                        figure(*figureOf(their, "probes")), methodName(opponent), ratioText(ratios),
+                        exactly.is_number() ? fmt::format("; judged within 0.2 % of the diagonal, {} the wrong rays", times(exactly))
+                                            : std::string()));
     }
 
     void equalError(const std::string& opponent, const Json& their, std::string_view key, std::string_view costKey)
@@ -270,6 +273,14 @@ Json pricesOf(const Points& ours, const Json& base)
     return prices;
 }
 
+/// "1.2 % of the rays wrongly (1.9 % judged within 0.2 % of the diagonal)".
+std::string wrongText(const Json& point)
+{
+    const auto exactly = figureOf(point, "wrong_rays_02");
+    return fmt::format("{} of the rays wrongly{}", percent(*figureOf(point, "wrong_rays")),
+                       exactly ? fmt::format(" ({} judged within 0.2 % of the diagonal)", percent(*exactly)) : std::string());
+}
+
 /// What a method fails by most, in words.
 std::string mostFailing(const Json& rays)
 {
@@ -302,10 +313,9 @@ Json breaksOf(const std::vector<Json>& points, const Json* base)
         if (!wrong) continue;
         if (point["knob"] == "default")
         {
-            breaks.push_back(
-                {{"method", method},
-                 {"id", point["id"]},
-                 {"sentence", fmt::format("{} answers {} of the rays wrongly, {}.", where, percent(*wrong), mostFailing(point["rays"]))}});
+            breaks.push_back({{"method", method},
+                              {"id", point["id"]},
+                              {"sentence", fmt::format("{} answers {}, {}.", where, wrongText(point), mostFailing(point["rays"]))}});
             continue;
         }
         if (!base || method != "ours") continue;
@@ -313,8 +323,8 @@ Json breaksOf(const std::vector<Json>& points, const Json* base)
         if (*wrong > kFewWrong && baseWrong && *wrong > kBroken * *baseWrong)
             breaks.push_back({{"method", method},
                               {"id", point["id"]},
-                              {"sentence", fmt::format("{} answers {} of the rays wrongly instead of {}, {}.", where, percent(*wrong),
-                                                       percent(*baseWrong), mostFailing(point["rays"]))}});
+                              {"sentence", fmt::format("{} answers {} instead of {}, {}.", where, wrongText(point), percent(*baseWrong),
+                                                       mostFailing(point["rays"]))}});
         else if (glossy && baseGlossy && *glossy > kBroken * *baseGlossy)
             breaks.push_back({{"method", method},
                               {"id", point["id"]},

@@ -44,6 +44,8 @@ Json raysJson(const TraceScore& score)
     return {{"count", score.rays},
             {"right_1", score.right1},
             {"right_02", score.right02},
+            {"right_1_unsure", score.right1Unsure},
+            {"right_02_unsure", score.right02Unsure},
             {"false", score.falseHit},
             {"leak", score.leak},
             {"unresolved", score.unresolved},

@@ -23,9 +23,10 @@ namespace
 
 constexpr int kSchema = 2;
 
-constexpr const char* kColumns[] = {"frame_ms",    "trace_ms",       "reads",        "wrong_rays", "unresolved",    "bytes",
-                                    "probes",      "bake_s",         "place_s",      "beauty.mse", "beauty.relmse", "beauty.flip",
-                                    "diffuse.mse", "diffuse.relmse", "diffuse.flip", "glossy.mse", "glossy.relmse", "glossy.flip"};
+constexpr const char* kColumns[] = {"frame_ms",     "trace_ms",      "reads",         "wrong_rays",  "wrong_rays_02",
+                                    "unresolved",   "bytes",         "probes",        "bake_s",      "place_s",
+                                    "beauty.mse",   "beauty.relmse", "beauty.flip",   "diffuse.mse", "diffuse.relmse",
+                                    "diffuse.flip", "glossy.mse",    "glossy.relmse", "glossy.flip"};
 
 std::string firstAfter(const char* file, std::string_view key, char separator)
 {

@@ -272,8 +272,9 @@ std::string describePoint(const Json& point)
     const auto figure = [&](std::string_view name) { return figureOf(point, name).value_or(std::numeric_limits<double>::quiet_NaN()); };
     std::string line = fmt::format("{}:", point["id"].get<std::string>());
     if (point.contains("rays"))
-        line += fmt::format(" rays right {:.2f} %, unresolved {:.2f} %, {:.1f} reads;", 100.0 - 100.0 * figure("wrong_rays"),
-                            100.0 * figure("unresolved"), figure("reads"));
+        line += fmt::format(" rays right {:.2f} % within 1 %, {:.2f} % within 0.2 %, unresolved {:.2f} %, {:.1f} reads;",
+                            100.0 - 100.0 * figure("wrong_rays"), 100.0 - 100.0 * figure("wrong_rays_02"), 100.0 * figure("unresolved"),
+                            figure("reads"));
     line += fmt::format(" relMSE of beauty {:.4f}, diffuse {:.4f}", figure("beauty.relmse"), figure("diffuse.relmse"));
     if (figureOf(point, "glossy.relmse")) line += fmt::format(", glossy {:.4f}", figure("glossy.relmse"));
     if (point.contains("bytes")) line += fmt::format("; {:.1f} MB", figure("bytes") / 1e6);

@@ -64,14 +64,14 @@ TEST(BenchCommand, MeasuresEveryMethodOnceAndKeepsIt)
         if (point["knob"] == "default") methods.push_back(point["method"]);
         ASSERT_TRUE(point["wrong"].is_null() || point.contains("error")) << point["wrong"];
         expectSound(point);
-        if (point["method"] == "path tracer")
-            EXPECT_FALSE(point.contains("rays"));
-        else
+        EXPECT_EQ(point.contains("images"), point["knob"] == "default" && point["method"] != "path tracer") << point["id"];
+        if (point["method"] == "path tracer" || point["method"] == "path tracer filtered") EXPECT_FALSE(point.contains("rays"));
+        if (point.contains("images"))
             for (const auto& [name, file] : point["images"].items())
                 EXPECT_EQ(readText(out + "/" + file.get<std::string>()).substr(0, 4), "SCNI") << name;
     }
     EXPECT_EQ(methods, (std::vector<std::string>{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang", "ddgi", "ddgi-placed",
-                                                 "sh-grid", "path tracer"}));
+                                                 "sh-grid", "path tracer", "path tracer filtered"}));
     EXPECT_FALSE(scene["analysis"]["fronts"]["glossy.relmse|frame_ms"].empty());
     EXPECT_FALSE(scene["analysis"]["equal"].empty());
     EXPECT_EQ(readText(out + "/images/cornell.reference.beauty.half").size(), 16u + 32 * 18 * 3 * 2);

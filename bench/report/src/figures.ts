@@ -70,10 +70,12 @@ const errors: Figure[] = ["glossy", "diffuse", "beauty"].flatMap((layer) =>
     }),
 );
 
-/** The share of rays that is not right within 1 % of the diagonal; null for what has no rays. */
-function wrongRays(point: Point): number | null {
-    const right = path(point, "rays.right_1");
-    return right === null ? null : 1 - right;
+/** The share of rays that is not right, of a figure that says how many are; null for what has no rays. */
+function wrongRays(right: string): (point: Point) => number | null {
+    return (point) => {
+        const share = path(point, right);
+        return share === null ? null : 1 - share;
+    };
 }
 
 export const figures: Figure[] = [
@@ -86,9 +88,12 @@ export const figures: Figure[] = [
     count("rays.reads_max", "texel reads a ray, most", "reads max", "lower"),
     count("rays.index_reads_mean", "octree reads a ray", "octree reads", "lower"),
     count("rays.handoffs_mean", "hand-offs a ray", "hand-offs"),
-    share("rays.wrong", "wrong rays (not within 1 %)", "wrong rays", "lower", wrongRays),
+    share("rays.wrong", "wrong rays (not within 1 %)", "wrong rays", "lower", wrongRays("rays.right_1")),
+    share("rays.wrong_02", "wrong rays (not within 0.2 %)", "wrong 0.2 %", "lower", wrongRays("rays.right_02")),
     share("rays.right_1", "right rays, within 1 % of the diagonal", "right 1 %", "higher"),
     share("rays.right_02", "right rays, within 0.2 % of the diagonal", "right 0.2 %", "higher"),
+    share("rays.right_1_unsure", "standard error of the right rays within 1 %, by viewpoint", "right 1 % +-", "lower"),
+    share("rays.right_02_unsure", "standard error of the right rays within 0.2 %, by viewpoint", "right 0.2 % +-", "lower"),
     share("rays.false", "false hits", "false", "lower"),
     share("rays.leak", "leaks", "leak", "lower"),
     share("rays.unresolved", "unresolved rays", "unresolved", "lower"),

@@ -12,6 +12,7 @@ const kOverview = [
     "trace_ms",
     "rays.reads_mean",
     "rays.wrong",
+    "rays.wrong_02",
     "error.glossy.relmse",
     "error.diffuse.relmse",
     "error.beauty.flip",

@@ -50,6 +50,32 @@ TEST(TraceScore, EachVerdictOnceByHand)
     EXPECT_DOUBLE_EQ(scoreTraces(set, traced, true).right02, 0.5);
 }
 
+// Ten viewpoints of ten rays, five of which are all right and five all wrong: as sure as ten throws of a coin, 1/2 sqrt(1/9), not as a
+// hundred. Where each viewpoint has five right rays, nothing is unsure.
+TEST(TraceScore, SharesAreAsSureAsTheirViewpoints)
+{
+    for (const bool together : {true, false})
+    {
+        RaySet set;
+        set.diagonal = 100.0f;
+        std::vector<TracedRay> traced;
+        for (uint32_t i = 0; i < 100; ++i)
+        {
+            set.origins.emplace_back(0.0f);
+            set.truth.push_back({.hit = true, .t = 10.0f});
+            set.viewpoints.push_back(i / 10);
+            const bool right = (together ? i / 10 : i) % 2 == 0;
+            traced.push_back({right ? TraceStatus::hit : TraceStatus::miss, 10.0f});
+        }
+        const TraceScore score = scoreTraces(set, traced);
+        EXPECT_DOUBLE_EQ(score.right1, 0.5);
+        EXPECT_NEAR(score.right1Unsure, together ? 0.5 * std::sqrt(1.0 / 9.0) : 0.0, 1e-12);
+        EXPECT_EQ(score.right02Unsure, score.right1Unsure);
+        set.viewpoints.clear();
+        EXPECT_EQ(scoreTraces(set, traced).right1Unsure, 0.0) << "nobody knows";
+    }
+}
+
 // Nearest rank: the 95th of 100, the 19th of 20, and of fewer than 20 the last.
 TEST(TraceScore, SpreadsAreNearestRanks)
 {
