@@ -88,7 +88,6 @@ std::span<const KnobRow> knobRows()
                                               rowOf(surfels),
                                               rowOf(refine),
                                               rowOf(refineRounds),
-                                              rowOf(relocateRounds),
                                               rowOf(refineSurfels),
                                               rowOf(resolution),
                                               rowOf(bounces),

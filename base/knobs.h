@@ -226,21 +226,13 @@ inline constexpr Knob<uint32_t> refineRounds{.name = "refineRounds",
                                              .unit = "rounds",
                                              .what = "Times through all probes to move them",
                                              .buys = "better views; each costs 8 views a probe, or 9"};
-inline constexpr Knob<uint32_t> relocateRounds{.name = "relocateRounds",
-                                               .member = "PlaceSettings::relocateRounds",
-                                               .value = 3,
-                                               .least = 0,
-                                               .most = 1000,
-                                               .unit = "rounds",
-                                               .what = "Times each probe is tried where no other sees, after the choice",
-                                               .buys = "coverage; each costs 32 views a probe"};
 inline constexpr Knob<uint32_t> refineSurfels{.name = "refineSurfels",
                                               .member = "PlaceSettings::refineSurfels",
                                               .value = 32000,
                                               .least = 1000,
                                               .most = 1'000'000,
                                               .unit = "samples",
-                                              .what = "Surface samples to relocate and refine by; up to half where few probes see",
+                                              .what = "Surface samples to refine by; up to half where few probes see",
                                               .buys = "finer judgement; time in proportion"};
 
 // ---- what a light field holds

@@ -95,28 +95,6 @@ void rate(Proposal& proposal, const LegalSpace& legal, const ViewTargets& target
     proposal.gain = gainOf(proposal.row, others.data(), targets.weights);
 }
 
-/// A surfel that no probe sees, each as likely as what it stands for.
-class Unseen
-{
-public:
-    Unseen(const std::vector<uint8_t>& best, const SurfelWeights& standFor) : weights(standFor)
-    {
-        for (uint32_t s = 0; s < best.size(); ++s)
-            if (best[s] == 0) (s < weights.common ? common : rare).push_back(s);
-    }
-    bool empty() const { return common.empty() && rare.empty(); }
-    uint32_t draw(Random& random) const
-    {
-        const uint64_t ofCommon = uint64_t(common.size()) * weights.commonWeight;
-        const uint64_t pick = random.below(ofCommon + uint64_t(rare.size()) * weights.rareWeight);
-        return pick < ofCommon ? common[pick / weights.commonWeight] : rare[(pick - ofCommon) / weights.rareWeight];
-    }
-
-private:
-    SurfelWeights weights;
-    std::vector<uint32_t> common, rare;
-};
-
 } // namespace
 
 float sampleLinear(float f0, float f1, float uniform)
@@ -210,43 +188,6 @@ Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, st
         if (const uint64_t fitness = views.fitness(); fitness > bestFitness) bestFitness = fitness, best = positions;
     }
     positions = best;
-    return success();
-}
-
-Status relocatePositions(const LegalSpace& legal, const ViewTargets& targets, std::vector<vec3>& positions,
-                         const RelocateSettings& settings, const Progress& progress)
-{
-    Views views(legal.visibility, targets, positions);
-    std::vector<uint8_t> others;
-    std::vector<Proposal> proposals(settings.tries);
-    for (size_t k = settings.fixed; k < positions.size(); ++k)
-    {
-        if (!report(progress, "relocation", double(k) / double(positions.size())))
-            return Error{ErrorCode::cancelled, "The relocation of probes was cancelled."};
-        views.without(k, others);
-        const Unseen unseen(others, targets.weights);
-        if (unseen.empty()) continue;
-        tbb::parallel_for(
-            size_t(0), proposals.size(),
-            [&](size_t i)
-            {
-                // A generator for each try: the result doesn't depend on the threads.
-                Random random(settings.seed, k * proposals.size() + i);
-                proposals[i].gain = 0;
-                for (int draw = 0; draw < 4; ++draw)
-                    if (drawBefore(legal, targets.surfels[unseen.draw(random)], settings.clearance, random, proposals[i].position))
-                    {
-                        rate(proposals[i], legal, targets, settings.clearance, others);
-                        break;
-                    }
-            });
-        Proposal& best =
-            *std::max_element(proposals.begin(), proposals.end(), [](const Proposal& a, const Proposal& b) { return a.gain < b.gain; });
-        if (best.gain <= gainOf(views.row(k), others.data(), targets.weights)) continue;
-        positions[k] = best.position;
-        targets.rate(legal.visibility, positions[k], best.row);
-        views.replace(k, best.row);
-    }
     return success();
 }
 

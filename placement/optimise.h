@@ -41,20 +41,6 @@ struct OptimiseSettings
 Status optimisePositions(const LegalSpace& legal, const ViewTargets& targets, std::vector<vec3>& positions,
                          const OptimiseSettings& settings, const Progress& progress);
 
-struct RelocateSettings
-{
-    uint32_t tries = 32;    // positions tried for each probe
-    float clearance = 0.0f; // metres, that every position keeps
-    uint64_t seed = 1;
-    size_t fixed = 0; // the first so many positions stay
-};
-
-/// Takes each probe in turn to the best of some positions anywhere, where the fitness of the whole set is higher: positions before surface
-/// that no other probe sees, so that a probe whose work others can do goes where none is. Deterministic for any number of threads.
-/// Errors: cancelled.
-Status relocatePositions(const LegalSpace& legal, const ViewTargets& targets, std::vector<vec3>& positions,
-                         const RelocateSettings& settings, const Progress& progress);
-
 /// A number in [0,1] with density proportional to (1 - x) f0 + x f1, from a uniform one: the inverse of the linear model's distribution.
 /// Written so that f0 = f1 (the paper's a = 0) and f0 + f1 = 0 need no case of their own beyond a guard.
 float sampleLinear(float f0, float f1, float uniform);

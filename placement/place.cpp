@@ -46,11 +46,11 @@ size_t numberOf(const std::vector<Pin>& pins, Pin::Kind kind)
 std::string faultOf(const PlaceSettings& settings)
 {
     const bool ownGrid = settings.grid != glm::ivec3(0);
-    const std::string fault = firstFault(
-        {faultOf(knobs::count, settings.count), faultOf(knobs::coverage, settings.coverage), faultOf(knobs::clearance, settings.clearance),
-         faultOf(knobs::distanceVoxels, settings.voxels), faultOf(knobs::candidates, settings.candidates),
-         faultOf(knobs::surfels, settings.surfels), faultOf(knobs::refineRounds, settings.refineRounds),
-         faultOf(knobs::relocateRounds, settings.relocateRounds), faultOf(knobs::refineSurfels, settings.refineSurfels)});
+    const std::string fault =
+        firstFault({faultOf(knobs::count, settings.count), faultOf(knobs::coverage, settings.coverage),
+                    faultOf(knobs::clearance, settings.clearance), faultOf(knobs::distanceVoxels, settings.voxels),
+                    faultOf(knobs::candidates, settings.candidates), faultOf(knobs::surfels, settings.surfels),
+                    faultOf(knobs::refineRounds, settings.refineRounds), faultOf(knobs::refineSurfels, settings.refineSurfels)});
     if (!fault.empty()) return fmt::format("{}.", fault);
     const size_t kept = numberOf(settings.pins, Pin::Kind::keep), added = numberOf(settings.pins, Pin::Kind::add);
     if (settings.method == PlaceSettings::Method::grid && !settings.pins.empty()) return "pins are given but a grid has no free choice.";
@@ -336,27 +336,11 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     std::vector<vec3> positions = positionsOf(candidates, chosen);
     std::vector<Candidate::Origin> origins;
     for (uint32_t candidate : chosen) origins.push_back(candidates[candidate].origin);
-    // Fresh samples each time: those of the choice have been fitted to already.
-    const auto freshTargets = [&](uint64_t seed)
-    {
-        return stratifiedTargets(visibility, mixedSurfels(scene, visibility, space, kDraws * settings.refineSurfels, settings.seed ^ seed),
-                                 positions, settings.refineSurfels / 2, probeSpacing(space, positions.size()), gaps);
-    };
-    // The choice was among sampled candidates: a probe may do better at a place that none of them was. First anywhere (relocation), then
-    // near by (Wang et al. 2019, section 3.3).
-    for (uint32_t round = 0; round < settings.relocateRounds; ++round)
-    {
-        const std::vector<vec3> before = positions;
-        RelocateSettings relocate;
-        relocate.clearance = clearance;
-        relocate.seed = settings.seed ^ (0x72656c6f63ull + round);
-        relocate.fixed = pinned;
-        if (const Status done = relocatePositions(legal, freshTargets(relocate.seed), positions, relocate, progress); !done)
-            return done.error();
-        for (size_t k = 0; k < positions.size(); ++k)
-            if (positions[k] != before[k]) origins[k] = Candidate::Origin::gap;
-    }
-    const ViewTargets refining = freshTargets(0x726566696e65ull);
+    // The choice was among sampled candidates: a probe may do better close by (Wang et al. 2019, section 3.3). By fresh samples: those of
+    // the choice have been fitted to already.
+    const ViewTargets refining = stratifiedTargets(
+        visibility, mixedSurfels(scene, visibility, space, kDraws * settings.refineSurfels, settings.seed ^ 0x726566696e65ull), positions,
+        settings.refineSurfels / 2, probeSpacing(space, positions.size()), gaps);
     OptimiseSettings optimise;
     optimise.refine = settings.refine;
     optimise.rounds = settings.refineRounds;

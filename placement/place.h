@@ -36,16 +36,15 @@ struct PlaceSettings
     std::vector<vec3> inside; // world, metres: the space that counts; empty: where the cameras are, else the largest enclosed region
     OpenSpace open;           // what counts beside what is enclosed
     std::vector<Pin> pins;    // positions that the user decides; not with a grid. Kept ones count as probes of `count`, added ones don't
-    uint64_t seed = knobs::placeSeed.value;                // of every random choice; same scene, settings and seed: same bytes
-    float clearance = knobs::clearance.value;              // metres from every surface, sdf; 0: one cell of the distance field
-    uint32_t voxels = knobs::distanceVoxels.value;         // most cells of the distance field
-    uint32_t candidates = knobs::candidates.value;         // positions to choose from
-    Refine refine = Refine(knobs::refine.place());         // how positions are moved after the choice, grid apart
-    uint32_t refineRounds = knobs::refineRounds.value;     // times through all probes
-    uint32_t relocateRounds = knobs::relocateRounds.value; // times each probe is tried where no other sees, after the choice
-    uint32_t refineSurfels = knobs::refineSurfels.value;   // surface samples to relocate and refine by; up to half where few probes see
-    bool explain = false;                                  // fills PlaceReport::picture
-    uint32_t surfels = knobs::surfels.value;               // surface samples to choose by
+    uint64_t seed = knobs::placeSeed.value;              // of every random choice; same scene, settings and seed: same bytes
+    float clearance = knobs::clearance.value;            // metres from every surface, sdf; 0: one cell of the distance field
+    uint32_t voxels = knobs::distanceVoxels.value;       // most cells of the distance field
+    uint32_t candidates = knobs::candidates.value;       // positions to choose from
+    Refine refine = Refine(knobs::refine.place());       // how positions are moved after the choice, grid apart
+    uint32_t refineRounds = knobs::refineRounds.value;   // times through all probes
+    uint32_t refineSurfels = knobs::refineSurfels.value; // surface samples to refine by; up to half where few probes see
+    bool explain = false;                                // fills PlaceReport::picture
+    uint32_t surfels = knobs::surfels.value;             // surface samples to choose by
 };
 
 struct PlaceReport

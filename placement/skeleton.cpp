@@ -56,6 +56,21 @@ size_t countClusters(const DistanceField& field, const std::vector<uint32_t>& ri
     return size_t(std::unique(keys.begin(), keys.end()) - keys.begin());
 }
 
+/// A position before a surface point: out along a random direction of the point's hemisphere, anywhere up to what is hit there. False when
+/// the one drawn is not legal.
+bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, Random& random, vec3& position)
+{
+    vec3 direction = random.direction();
+    if (glm::dot(direction, surfel.normal) < 0.0f) direction = -direction;
+    const vec3 start = surfel.position + legal.visibility.epsilon() * surfel.normal;
+    RayHit hit;
+    const float reach = legal.visibility.cast(start, direction, hit) ? hit.t : legal.space.bounds.diagonal();
+    // Squared: the far part of a cone is free more often, the near part sees more of what hides in a corner.
+    const float share = random.uniform();
+    position = start + share * share * reach * direction;
+    return legal.allows(position, clearance);
+}
+
 } // namespace
 
 bool LegalSpace::allows(vec3 point, float clearance) const
@@ -142,19 +157,6 @@ std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, f
             if (allowed[i]) found.push_back({drawn[i], Candidate::Origin::spread});
     }
     return found;
-}
-
-bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, Random& random, vec3& position)
-{
-    vec3 direction = random.direction();
-    if (glm::dot(direction, surfel.normal) < 0.0f) direction = -direction;
-    const vec3 start = surfel.position + legal.visibility.epsilon() * surfel.normal;
-    RayHit hit;
-    const float reach = legal.visibility.cast(start, direction, hit) ? hit.t : legal.space.bounds.diagonal();
-    // Squared: the far part of a cone is free more often, the near part sees more of what hides in a corner.
-    const float share = random.uniform();
-    position = start + share * share * reach * direction;
-    return legal.allows(position, clearance);
 }
 
 std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Surfel> gaps, size_t count, float clearance, uint64_t seed)

@@ -49,10 +49,6 @@ std::vector<Candidate> skeletonCandidates(const LegalSpace& legal, size_t count,
 /// Random legal positions, evenly spread over the reachable space; fewer than `count` when the clearance forbids most.
 std::vector<Candidate> spreadCandidates(const LegalSpace& legal, size_t count, float clearance, uint64_t seed);
 
-/// A position before a surface point: out along a random direction of the point's hemisphere, anywhere up to what is hit there. False when
-/// the one drawn is not legal.
-bool drawBefore(const LegalSpace& legal, const Surfel& surfel, float clearance, Random& random, vec3& position);
-
 /// Positions before surface points that others leave unseen.
 std::vector<Candidate> gapCandidates(const LegalSpace& legal, std::span<const Surfel> gaps, size_t count, float clearance, uint64_t seed);
 

@@ -28,10 +28,7 @@ Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, 
     PlaceSettings place;
     place.count = settings.probes;
     if (settings.placement == "skeleton")
-    {
         place.refine = Refine::none;
-        place.relocateRounds = 0;
-    }
     else if (settings.placement == "balls")
         place.method = PlaceSettings::Method::balls;
     else if (settings.placement == "grid")

@@ -135,44 +135,5 @@ TEST(OptimisePositions, StopsWhenAsked)
     EXPECT_EQ(done.error().code, ErrorCode::cancelled);
 }
 
-// One of two probes on one side of a door-less wall is needless, and nobody sees the other side.
-TEST(RelocatePositions, TakesANeedlessProbeToWhereNoneIs)
-{
-    const Scene scene = dividedRoom();
-    const Result<Visibility> visibility = Visibility::build(scene);
-    const std::vector<vec3> inside{{1, 1, 2}, {5, 1, 2}};
-    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, inside, 100000);
-    ASSERT_TRUE(space) << space.error().message;
-    const ViewTargets targets{*visibility, raySurfels(*visibility, *space, 4000, 5), 1.0f};
-    std::vector<std::vector<vec3>> results;
-    for (const size_t threads : {1u, 2u})
-    {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        results.push_back({{1, 1.5f, 2}, {1.2f, 1.5f, 2}});
-        RelocateSettings settings;
-        settings.clearance = 0.1f;
-        ASSERT_TRUE(relocatePositions({*visibility, *space}, targets, results.back(), settings, {}));
-    }
-    EXPECT_EQ(results[0], results[1]);
-    EXPECT_EQ(std::count_if(results[0].begin(), results[0].end(), [](vec3 position) { return position.x > 4.0f; }), 1);
-    for (const vec3& position : results[0]) EXPECT_GE(bruteDistance(scene, position), 0.1 - 1e-5);
-}
-
-TEST(RelocatePositions, FixedOnesStayAndItStopsWhenAsked)
-{
-    const Room room;
-    const std::vector<vec3> crowd{{0.5f, 2.5f, 0.5f}, {0.7f, 2.5f, 0.5f}};
-    std::vector<vec3> positions = crowd;
-    RelocateSettings settings;
-    settings.fixed = 2;
-    ASSERT_TRUE(relocatePositions({*room.visibility, *room.space}, room.targets, positions, settings, {}));
-    EXPECT_EQ(positions, crowd);
-    settings.fixed = 0;
-    const Status done =
-        relocatePositions({*room.visibility, *room.space}, room.targets, positions, settings, [](auto, double) { return false; });
-    ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().code, ErrorCode::cancelled);
-}
-
 } // namespace
 } // namespace sconce

@@ -1,8 +1,8 @@
 // What a placement is worth beside its yardstick, in one run and on the same samples:
 //   sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX] [--seed N]
-// Rows: yardstick, grid, skeleton (alone), chosen (greedy and exchange), relocated (chosen and relocated), gradient, gibbs, stochastic
-// (that and refined so; gradient is what `sconce place` does), balls (chosen with the other skeleton), refined (chosen and refined by
-// gradient), bound (what any legal position at all sees). Each line: coverage of ray hits and of area in per cent, cosine and distance of
+// Rows: yardstick, grid, skeleton (alone), chosen (greedy and exchange), gradient, gibbs, stochastic
+// (that and refined so; gradient is what `sconce place` does), balls (chosen with the other skeleton), bound (what any legal position at
+// all sees). The grid is the best of `place --fit-grid`. Each line: coverage of ray hits and of area in per cent, cosine and distance of
 // the best view (medians), seconds. --save writes PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
 #include <sys/resource.h>
 
@@ -104,11 +104,11 @@ struct Table
         return set;
     }
 
-    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method, Refine refine, bool relocate) const
+    Result<ProbeSet> ours(uint32_t count, PlaceSettings::Method method, Refine refine) const
     {
         PlaceSettings settings;
-        if (!relocate) settings.relocateRounds = 0;
         settings.count = count;
+        settings.fitGrid = method == PlaceSettings::Method::grid;
         settings.method = method;
         settings.refine = refine;
         settings.seed = seed;
@@ -135,7 +135,7 @@ struct Table
     {
         int failures = line("yardstick", count,
                             [&] { return Result<ProbeSet>(setOf(test::yardstickProbes(visibility, space, count, 6 + seed), "greedy")); });
-        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid, Refine::none, false); });
+        failures += line("grid", count, [&] { return ours(count, PlaceSettings::Method::grid, Refine::none); });
         failures += line("skeleton", count,
                          [&]
                          {
@@ -144,13 +144,12 @@ struct Table
                                  positions.push_back(candidate.position);
                              return Result<ProbeSet>(setOf(positions, "skeleton"));
                          });
-        failures += line("chosen", count, [&] { return ours(count, PlaceSettings::Method::sdf, Refine::none, false); });
+        failures += line("chosen", count, [&] { return ours(count, PlaceSettings::Method::sdf, Refine::none); });
         const std::pair<const char*, Refine> refinements[] = {
-            {"relocated", Refine::none}, {"gradient", Refine::gradient}, {"gibbs", Refine::gibbs}, {"stochastic", Refine::stochastic}};
+            {"gradient", Refine::gradient}, {"gibbs", Refine::gibbs}, {"stochastic", Refine::stochastic}};
         for (const auto& [name, refine] : refinements)
-            failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine, true); });
-        failures += line("refined", count, [&] { return ours(count, PlaceSettings::Method::sdf, Refine::gradient, false); });
-        failures += line("balls", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::none, false); });
+            failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine); });
+        failures += line("balls", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::none); });
         return failures;
     }
 };

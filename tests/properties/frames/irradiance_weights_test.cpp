@@ -206,7 +206,7 @@ TEST_F(IrradianceWeightsTest, OursStayBesideThoseOf2017AndOfRtxgi)
             place.voxels = 1u << 15;
             place.candidates = 300;
             place.surfels = place.refineSurfels = 4000;
-            place.refineRounds = place.relocateRounds = 1;
+            place.refineRounds = 1;
             PlaceReport placed;
             const Result<ProbeSet> set = placeProbes(scene, place, placed);
             ASSERT_TRUE(set) << set.error().message;

@@ -78,6 +78,15 @@ TEST_P(EveryScene, RaysEndAndDependOnNoLevelNorSignOfZero)
     }
     expectAtMost(row("coarsest level 0, 2, 4: rays with another status, hand-off or bit of t"), expected.size(), double(levels), 0.0);
 
+    // What the cap on hand-offs takes: a ray that reaches it ends UNKNOWN, and would go on.
+    gpu::TraceQuality patient = quality;
+    patient.maxHandoffs = knobs::maxHandoffs.most;
+    Walk<float> uncapped(made->field, patient);
+    const auto more = answers(uncapped);
+    size_t cut = 0;
+    for (size_t i = 0; i < more.size(); ++i) cut += differ(expected[i], more[i]);
+    expectAtMost(row("share answered otherwise without a cap on hand-offs"), more.size(), double(cut) / double(more.size()), 0.0007);
+
     size_t signs = 0;
     for (size_t i = 0; i < kRays; ++i)
     {
@@ -104,7 +113,6 @@ TEST_P(EveryScene, RaysEndAndDependOnNoLevelNorSignOfZero)
     }
     expectAtMost(row("rays stopped by the limit of turns"), walk.rays, double(walk.limitReached), 0.0);
     expectAtMost(row("turns, share of the derived limit"), walk.rays, walk.worstTurns, 1.0);
-    expectAtMost(row("hand-offs"), walk.rays, walk.worstHandoffs, quality.maxHandoffs + 1);
     expectAtMost(row("times t falls outside a second opinion"), walk.rays, double(walk.fallsOutsideOpinions), 0.0);
     expectAtMost(row("numbers that are not finite"), walk.rays, double(walk.notFinite), 0.0);
 }
@@ -147,7 +155,7 @@ TEST_P(EveryScene, DeepAndShallowOctreesGiveTheSameAnswers)
         worst = std::max(worst, right - scoreTraces(glossy, walkAll(other, glossy)).right1);
         limits += other.limitReached + other.notFinite;
     }
-    expectAtMost(row("octrees of 1, 5 and 6 levels: loss of the share right"), 3 * kRays, worst, 0.01);
+    expectAtMost(row("octrees of 1, 5 and 6 levels: loss of the share right"), 3 * kRays, worst, 0.001);
     expectAtMost(row("octrees of 1, 5 and 6 levels: rays stopped by the limit, or not finite"), 3 * kRays, double(limits), 0.0);
 }
 
@@ -193,8 +201,8 @@ TEST_P(EveryScene, LightLookedUpInFloatIsThatInDouble)
         bad += !std::isfinite(thrown.x + thrown.y + thrown.z);
         otherPatches += differs(thrown, oracle.patchIrradiance(probe, glm::dvec3(fromProbe), glm::dvec3(n)));
     }
-    expectAtMost(row("irradiance in float: share off by over 1e-3 from double"), kRays, double(other) / kRays, 0.001);
-    expectAtMost(row("light of patches in float: share off by over 1e-3 from double"), kRays, double(otherPatches) / kRays, 0.001);
+    expectAtMost(row("irradiance in float: share off by over 1e-3 from double"), kRays, double(other) / kRays, kHardlyAny);
+    expectAtMost(row("light of patches in float: share off by over 1e-3 from double"), kRays, double(otherPatches) / kRays, kHardlyAny);
     expectAtMost(row("irradiance in float: numbers that are not finite"), kRays, double(bad), 0.0);
 }
 
@@ -226,8 +234,8 @@ TEST_P(EveryScene, DeviceAnswersLikeFloat)
         integers += !same;
         far += same && std::abs(cpu.t - hits[i].t) > 2e-5f * cpu.t;
     }
-    expectAtMost(row("device against float: share with another integer"), kRays, double(integers) / kRays, 0.0005, 0.0);
-    expectAtMost(row("device against float: share with t off by over 2e-5"), kRays, double(far) / kRays, 0.0005, 0.0);
+    expectAtMost(row("device against float: share with another integer"), kRays, double(integers) / kRays, kHardlyAny, 0.0);
+    expectAtMost(row("device against float: share with t off by over 2e-5"), kRays, double(far) / kRays, kHardlyAny, 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::Values("cornell", "temple", "curtains", "town", "sponza"),

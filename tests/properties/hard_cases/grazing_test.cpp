@@ -22,7 +22,8 @@ struct GrazingCase
 {
     const char* scene;
     uint32_t probes, faceSize;
-    double wrong; // share not right that is reached, with a margin
+    // Shares that are reached, with a margin: not right, unknown, not right of glossy rays from the same starts.
+    double wrong, unknown, usual;
 };
 void PrintTo(const GrazingCase& one, std::ostream* out)
 {
@@ -73,13 +74,14 @@ TEST_P(Grazing, StartsWithinThreeDegreesOfTheirSurface)
     const TraceScore usual = scoreTraces(ordinary, walkAll(walk, ordinary)), score = scoreTraces(grazing, walkAll(walk, grazing));
     const std::string row = "grazing starts, " + name;
     expectAtMost(row + ": share not right", kRays, 1.0 - score.right1, GetParam().wrong, kAsked);
-    expectAtMost(row + ": share unknown", kRays, score.unresolved, 0.05);
-    expectAtMost(row + ": share not right of glossy rays from the same starts", kRays, 1.0 - usual.right1, 0.06);
+    expectAtMost(row + ": share unknown", kRays, score.unresolved, GetParam().unknown);
+    expectAtMost(row + ": share not right of glossy rays from the same starts", kRays, 1.0 - usual.right1, GetParam().usual);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Grazing,
-                         testing::Values(GrazingCase{"cornell", 8, 128, 0.03}, GrazingCase{"temple", 24, 128, 0.03},
-                                         GrazingCase{"hall", 24, 128, 0.05}, GrazingCase{"sponza", 48, 256, 0.08}),
+                         testing::Values(GrazingCase{"cornell", 8, 128, 0.03, 0.03, 0.006},
+                                         GrazingCase{"temple", 24, 128, 0.026, 0.008, 0.015},
+                                         GrazingCase{"hall", 24, 128, 0.05, 0.024, 0.05}, GrazingCase{"sponza", 48, 256, 0.08, 0.05, 0.06}),
                          [](const auto& one) { return std::string(one.param.scene); });
 
 } // namespace

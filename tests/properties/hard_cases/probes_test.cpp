@@ -59,7 +59,7 @@ TEST(DegenerateGeometry, CoplanarDuplicatesSliversAndTrianglesWithoutArea)
         mesh.triangle({x, y, 0.1f}, {x, y, 0.1f}, {x, y, 0.1f}, 0);
     }
     const HardScene box(std::move(scene), kGoodProbes, 128);
-    expectBoxIsSeen("walls twice and turned, slivers, no area", box.field, 0.003, 0.003);
+    expectBoxIsSeen("walls twice and turned, slivers, no area", box.field, kHardlyAny, kHardlyAny);
 }
 
 TEST(OddProbes, OnInAndBehindSurfaces)
@@ -82,7 +82,7 @@ TEST(OddProbes, OnInAndBehindSurfaces)
         const ClearedProbes cleared = clearedOfSurfaces(scene, probes, 2e-4f * glm::distance(scene.bounds().low, scene.bounds().high));
         EXPECT_EQ(cleared.tight, 0u);
         const HardScene box(closedBox(), cleared.positions, 128);
-        expectBoxIsSeen(std::string("two good probes and a ") + odd.name, box.field, 0.005, 0.01);
+        expectBoxIsSeen(std::string("two good probes and a ") + odd.name, box.field, kHardlyAny, kHardlyAny);
     }
 }
 
@@ -104,13 +104,13 @@ TEST(OddProbes, InSolid)
         const TracedRay got = walk.trace(o, d);
         wrong += got.status != TraceStatus::hit || !(std::abs(got.t - truth) <= 0.01 * 2.0 * glm::length(kBoxHalf));
     }
-    expectAtMost("a probe in solid beside two good ones: share wrong or unknown", kRays, double(wrong) / kRays, 0.005);
+    expectAtMost("a probe in solid beside two good ones: share wrong or unknown", kRays, double(wrong) / kRays, kHardlyAny);
 }
 
 TEST(OddProbes, AllInOneSpot)
 {
     const HardScene box(closedBox(), std::vector<vec3>(16, kGoodProbes[0]), 128);
-    expectBoxIsSeen("16 probes in one spot", box.field, 0.003, 0.003);
+    expectBoxIsSeen("16 probes in one spot", box.field, 0.0004, kHardlyAny);
 }
 
 TEST(OddProbes, From1To65535)
@@ -135,8 +135,8 @@ TEST(OddProbes, From1To65535)
             crossed += got.status == TraceStatus::hit && x * o.x < 0.0f && std::abs(x) > 0.1f;
         }
         const std::string name = std::to_string(probes) + " probes in a divided box, faces of 8";
-        expectAtMost(name + ": share through the wall", kRays, double(crossed) / kRays, 0.01);
-        expectAtMost(name + ": share that leaves", kRays, double(miss) / kRays, 0.01);
+        expectAtMost(name + ": share through the wall", kRays, double(crossed) / kRays, 0.006);
+        expectAtMost(name + ": share that leaves", kRays, double(miss) / kRays, 0.008);
         expectAtMost(name + ": rays stopped by the limit, or not finite", kRays, double(walk.limitReached + walk.notFinite), 0.0);
     }
 }
@@ -146,7 +146,7 @@ TEST(OddProbes, FacesOfAnySizeFrom32To1024)
     for (const uint32_t size : {32u, 60u, 100u, 324u, 1024u})
     {
         const HardScene box(closedBox(), std::vector<vec3>{kGoodProbes[0]}, size, 16);
-        expectBoxIsSeen("faces of " + std::to_string(size) + " texels", box.field, size < 64 ? 0.05 : 0.02, 0.01);
+        expectBoxIsSeen("faces of " + std::to_string(size) + " texels", box.field, size < 64 ? 0.0012 : kHardlyAny, kHardlyAny);
     }
 }
 

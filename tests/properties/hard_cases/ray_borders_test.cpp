@@ -68,7 +68,7 @@ TEST(RayBorders, OriginsOnEdgesCornersAndDiagonalsOfChartsAndOnTexelBorders)
             if (i % 3 == 2) d = text.faceDirection(face, i & 4 ? vec3(1, 0, 0) : vec3(0, 1, 0));
             score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf), kOnePercent);
         }
-        score.expect(names[kind], 0.002, 0.005);
+        score.expect(names[kind], kHardlyAny, kHardlyAny);
     }
 }
 
@@ -99,8 +99,8 @@ TEST(RayBorders, OriginsOnBordersOfOctreeCellsAndOnTheBounds)
         if (std::abs(inward[axis]) < 0.1f) continue; // grazing starts are reported apart
         bounds.add(walk.trace(onWall, inward), boxExit(onWall, inward, kBoxHalf), kOnePercent);
     }
-    cells.expect("origins on octree cell borders", 0.002, 0.005);
-    bounds.expect("origins exactly on a wall at the bounds", 0.005, 0.01);
+    cells.expect("origins on octree cell borders", kHardlyAny, kHardlyAny);
+    bounds.expect("origins exactly on a wall at the bounds", kHardlyAny, kHardlyAny);
 }
 
 TEST(RayBorders, OddNumbersGiveFiniteAnswers)
@@ -180,7 +180,7 @@ TEST(RayBorders, HitsAtZeroDistance)
     }
     expectAtMost("rays into the wall they start on: share that leaves", kRays, double(through) / kRays, 0.0);
     expectAtMost("rays into the wall they start on: share of hits off by over 1 %", kRays, double(far) / kRays, 0.0);
-    expectAtMost("rays into the wall they start on: worst t, metres", kRays, worst, kOnePercent);
+    expectAtMost("rays into the wall they start on: worst t, metres", kRays, worst, 0.007);
 }
 
 /// Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", in double precision, against every triangle: the truth where
@@ -235,8 +235,8 @@ TEST(RayBorders, RaysAimedExactlyAtVerticesAndEdges)
         (edge ? edges : vertices).add(walk.trace(origin, d), truth, tolerance);
     }
     EXPECT_EQ(truthless, 0u) << "the truth itself leaks";
-    vertices.expect("rays aimed exactly at vertices", 0.002, 0.005);
-    edges.expect("rays aimed exactly at edges", 0.002, 0.005);
+    vertices.expect("rays aimed exactly at vertices", kHardlyAny, kHardlyAny);
+    edges.expect("rays aimed exactly at edges", kHardlyAny, kHardlyAny);
 }
 
 } // namespace

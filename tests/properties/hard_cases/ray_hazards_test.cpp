@@ -45,7 +45,7 @@ void expectBox(const std::string& name, const BoxScore& score, double unknown)
 {
     const auto rays = double(score.rays);
     expectAtMost(name + ": share that leaves the closed box", score.rays, score.miss / rays, 0.0);
-    expectAtMost(name + ": share of hits off by over 1 %", score.rays, score.off / rays, 0.001);
+    expectAtMost(name + ": share of hits off by over 1 %", score.rays, score.off / rays, 0.0004);
     expectAtMost(name + ": share unknown", score.rays, score.unknown / rays, unknown);
 }
 
@@ -54,7 +54,7 @@ TEST(RayHazards, BoundaryPastInfinityLeaksNothingInCornell)
     const HardScene cornell(*makeBuiltinScene("cornell"), kCornellProbes, 256, 64);
     const RaySet set = glossyRaysOf(cornell, kRays);
     Walk<float> walk(cornell.field, defaultQuality());
-    expectAtMost("cornell, glossy rays: leak", kRays, scoreTraces(set, walkAll(walk, set)).leak, 0.001);
+    expectAtMost("cornell, glossy rays: leak", kRays, scoreTraces(set, walkAll(walk, set)).leak, 0.0004);
 }
 
 TEST(RayHazards, RaysThatEndExactlyOnTheBoundsAreStopped)
@@ -72,7 +72,7 @@ TEST(RayHazards, RaysThatEndExactlyOnTheBoundsAreStopped)
         const vec3 d = glm::normalize(target - origin);
         score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf));
     }
-    expectBox("rays that end exactly on the bounds", score, 0.005);
+    expectBox("rays that end exactly on the bounds", score, kHardlyAny);
 }
 
 TEST(RayHazards, RaysThroughAndFromTheProbeCentreAlongAxesAndDiagonals)
@@ -93,7 +93,7 @@ TEST(RayHazards, RaysThroughAndFromTheProbeCentreAlongAxesAndDiagonals)
         const vec3 origin = probe - back[i % 5] * d;
         score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf));
     }
-    expectBox("rays through and from probe centres", score, 0.002);
+    expectBox("rays through and from probe centres", score, kHardlyAny);
 }
 
 TEST(RayHazards, RaysInThePlanesBetweenFacesOfAProbe)
@@ -117,7 +117,7 @@ TEST(RayHazards, RaysInThePlanesBetweenFacesOfAProbe)
         const vec3 origin = probe + off;
         score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf));
     }
-    expectBox("rays in the planes between a probe's faces", score, 0.005);
+    expectBox("rays in the planes between a probe's faces", score, kHardlyAny);
 }
 
 // A texel of these maps is 2 to 3 cm there: what starts nearer to a sheet than that may be taken for a start on the sheet's other side by a
@@ -145,10 +145,10 @@ TEST(RayHazards, OriginsBehindWavySheetsWithoutThickness)
         bool normals;    // whether rays know the side they start on
         double bound;    // of leaks
     };
-    for (const Case& test : {Case{"rays from 4 to 10 cm off curtains", 0.04f, 0.1f, false, 0.01},
+    for (const Case& test : {Case{"rays from 4 to 10 cm off curtains", 0.04f, 0.1f, false, 0.0045},
                              Case{"rays from 0.3 to 3 cm off curtains", 0.003f, 0.03f, false, 0.05},
-                             Case{"rays from 0.3 to 3 cm off curtains, with the normal", 0.003f, 0.03f, true, 0.01},
-                             Case{"rays from 1 mm off curtains, with the normal", 0.001f, 0.001f, true, 0.01}})
+                             Case{"rays from 0.3 to 3 cm off curtains, with the normal", 0.003f, 0.03f, true, 0.003},
+                             Case{"rays from 1 mm off curtains, with the normal", 0.001f, 0.001f, true, 0.005}})
     {
         static const auto scene = hardScene("curtains");
         std::vector<vec3> origins, directions, normals;
@@ -164,7 +164,7 @@ TEST(RayHazards, OriginsBehindWavySheetsWithoutThickness)
         if (test.normals) set.normals = normals;
         Walk<float> walk(scene->field, defaultQuality());
         const TraceScore score = scoreTraces(set, walkAll(walk, set));
-        expectAtMost(std::string(test.name) + ": false hits", kRays, score.falseHit, 0.01);
+        expectAtMost(std::string(test.name) + ": false hits", kRays, score.falseHit, 0.0038);
         expectAtMost(std::string(test.name) + ": leaks", kRays, score.leak, test.bound, 0.01);
     }
 }
@@ -193,7 +193,7 @@ TEST(RayHazards, RaysAimedWithinATexelOfSilhouettes)
     const TraceScore score = scoreOf(box, origins, directions);
     expectAtMost("rays within a texel of silhouettes: false hits", kRays, score.falseHit, 0.08);
     expectAtMost("rays within a texel of silhouettes: leaks", kRays, score.leak, 0.03);
-    expectAtMost("rays within a texel of silhouettes: unknown", kRays, score.unresolved, 0.05);
+    expectAtMost("rays within a texel of silhouettes: unknown", kRays, score.unresolved, 0.04);
 }
 
 TEST(RayHazards, ScalingByAHundredthAndAHundredChangesNoScore)
@@ -230,7 +230,6 @@ TEST(RayHazards, EveryRayEndsWithinDerivedBounds)
     }
     expectAtMost("every ray ends: rays stopped by the limit of turns", walk.rays, double(walk.limitReached), 0.0);
     expectAtMost("every ray ends: turns, share of the derived limit", walk.rays, walk.worstTurns, 1.0);
-    expectAtMost("every ray ends: hand-offs", walk.rays, walk.worstHandoffs, quality.maxHandoffs + 1);
     expectAtMost("every ray ends: times t falls outside a second opinion", walk.rays, double(walk.fallsOutsideOpinions), 0.0);
     expectAtMost("every ray ends: times t falls in a ray", walk.rays, walk.worstFalls, 2.0);
     expectAtMost("every ray ends: numbers that are not finite", walk.rays, double(walk.notFinite), 0.0);

@@ -42,7 +42,6 @@ public:
         limitReached += r.phase != text.kPhaseDone;
         worstTurns = std::max(worstTurns, double(turns) / limit);
         worstFalls = std::max(worstFalls, falls);
-        worstHandoffs = std::max(worstHandoffs, result.handoffs);
         worstReads = std::max(worstReads, result.distanceReads);
         if (t) *t = double(result.t) * field.info.scale;
         return {TraceStatus(result.status), float(result.t * Real(field.info.scale)), uint32_t(result.handoffs),
@@ -51,7 +50,7 @@ public:
 
     size_t rays = 0, limitReached = 0, fallsOutsideOpinions = 0, notFinite = 0;
     double worstTurns = 0.0; // share of the limit
-    int worstFalls = 0, worstHandoffs = 0, worstReads = 0;
+    int worstFalls = 0, worstReads = 0;
 
 private:
     const FieldData& field;
