@@ -118,16 +118,17 @@ std::vector<ProbeGrid> gridsFor(const FreeSpace& space, const PlaceSettings& set
     return grids;
 }
 
-/// Share of the points that some corner of their cell sees: what lights them, and where rays that leave them begin. A grid that is fitted
-/// to what any of its points sees has larger cells, whose corners stand behind walls: on Sponza, twice the wrong rays.
-double seenByCorners(const Visibility& visibility, const ProbeGrid& grid, std::span<const Surfel> points)
+/// How well the corners of their cell see some points, in the mean of the best corner's viewQuality: what lights them, and where rays that
+/// leave them begin. A grid that is fitted to what any of its points sees has larger cells, whose corners stand behind walls: on Sponza,
+/// twice the wrong rays. One fitted to the share that corners see has them in the walls themselves.
+double qualityOfCorners(const Visibility& visibility, const ProbeGrid& grid, std::span<const Surfel> points, float spacing)
 {
-    std::vector<uint8_t> seen(points.size());
+    std::vector<float> best(points.size());
     tbb::parallel_for(size_t(0), points.size(),
                       [&](size_t s)
                       {
                           const vec3 place = (points[s].position - grid.origin) / grid.step;
-                          for (int corner = 0; corner < 8 && !seen[s]; ++corner)
+                          for (int corner = 0; corner < 8; ++corner)
                           {
                               glm::ivec3 at;
                               for (int a = 0; a < 3; ++a)
@@ -135,10 +136,12 @@ double seenByCorners(const Visibility& visibility, const ProbeGrid& grid, std::s
                                   const int low = std::clamp(int(std::floor(place[a])), 0, std::max(grid.count[a] - 2, 0));
                                   at[a] = std::min(low + (corner >> a & 1), grid.count[a] - 1);
                               }
-                              seen[s] = visibility.sees(grid.origin + grid.step * vec3(at), points[s].position, points[s].normal);
+                              const vec3 probe = grid.origin + grid.step * vec3(at);
+                              const float quality = viewQuality(points[s], probe, spacing);
+                              if (quality > best[s] && visibility.sees(probe, points[s].position, points[s].normal)) best[s] = quality;
                           }
                       });
-    return double(std::ranges::count(seen, 1)) / double(std::max<size_t>(seen.size(), 1));
+    return std::accumulate(best.begin(), best.end(), 0.0) / double(std::max<size_t>(best.size(), 1));
 }
 
 Result<ProbeSet> placeGrid(const Scene& scene, const Visibility& visibility, const FreeSpace& space, const PlaceSettings& settings,
@@ -154,9 +157,12 @@ Result<ProbeSet> placeGrid(const Scene& scene, const Visibility& visibility, con
         check.seed = settings.seed ^ 0x67726964ull;
         const Result<Coverage> sampled = measureCoverage(scene, visibility, space, {}, check, progress);
         if (!sampled) return sampled.error();
-        double mostSeen = -1.0;
+        const glm::ivec3 count = grids.front().count;
+        const float spacing = probeSpacing(space, size_t(count.x) * size_t(count.y) * size_t(count.z)); // one measure for all of them
+        double most = -1.0;
         for (const ProbeGrid& grid : grids)
-            if (const double seen = seenByCorners(visibility, grid, sampled->points); seen > mostSeen) mostSeen = seen, chosen = &grid;
+            if (const double quality = qualityOfCorners(visibility, grid, sampled->points, spacing); quality > most)
+                most = quality, chosen = &grid;
     }
     ProbeSet best = gridSet(space, *chosen);
     for (const PlacedProbe& probe : best.probes) report.gridOutside += space.contains(probe.position) ? 0 : 1;
