@@ -3,6 +3,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 
@@ -17,8 +18,9 @@ namespace
 
 static_assert(std::endian::native == std::endian::little, "the file is little endian and written as it lies in memory");
 
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr float kMissed = -1.0f;
+constexpr uint32_t kNoViewpoint = ~0u;
 
 struct Header
 {
@@ -34,8 +36,9 @@ struct Record
 {
     vec3 origin, direction, normal;
     float truth, fartherTruth; // metres
+    uint32_t viewpoint;
 };
-static_assert(sizeof(Record) == 44);
+static_assert(sizeof(Record) == 48);
 
 float recorded(const RayTruth& truth)
 {
@@ -64,7 +67,12 @@ Status saveRays(const RaySet& set, const std::filesystem::path& file)
     header.diagonal = set.diagonal;
     std::vector<Record> records(set.size());
     for (size_t i = 0; i < set.size(); ++i)
-        records[i] = {set.origins[i], set.directions[i], set.normals[i], recorded(set.truth[i]), recorded(set.fartherTruth[i])};
+        records[i] = {set.origins[i],
+                      set.directions[i],
+                      set.normals[i],
+                      recorded(set.truth[i]),
+                      recorded(set.fartherTruth[i]),
+                      set.viewpoints.empty() ? kNoViewpoint : set.viewpoints[i]};
     auto target = SafeFile::create(file);
     if (!target) return target.error();
     if (auto status = target->append(std::as_bytes(std::span(&header, 1))); !status) return status;
@@ -94,16 +102,18 @@ Result<RaySet> loadRays(const std::filesystem::path& file)
     for (const Record& record : records)
     {
         // Every number at once: a single one that is none would go unnoticed into the scores of all tracers.
-        float numbers[sizeof(Record) / sizeof(float)];
-        std::memcpy(numbers, &record, sizeof record);
+        float numbers[offsetof(Record, viewpoint) / sizeof(float)];
+        std::memcpy(numbers, &record, sizeof numbers);
         for (const float number : numbers)
             if (!std::isfinite(number)) return damaged(file, "has numbers that are not finite");
         set.origins.push_back(record.origin);
         set.directions.push_back(record.direction);
         set.normals.push_back(record.normal);
+        if (record.viewpoint != kNoViewpoint) set.viewpoints.push_back(record.viewpoint);
         set.truth.push_back(truthFrom(record.truth));
         set.fartherTruth.push_back(truthFrom(record.fartherTruth));
     }
+    if (!set.viewpoints.empty() && set.viewpoints.size() != set.size()) return damaged(file, "has viewpoints for some rays alone");
     set.startCosine.assign(set.size(), 1.0f);
     return set;
 }
