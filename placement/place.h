@@ -29,7 +29,7 @@ struct PlaceSettings
     };
     Method method = Method(knobs::method.place());
     glm::ivec3 grid{0};                     // grid: points along each axis, product 1..65,535; 0: chosen from `count`
-    bool fitGrid = knobs::fitGrid.value;    // grid: in the best of several shapes and poses by coverage
+    bool fitGrid = knobs::fitGrid.value;    // grid: of several shapes and poses that whose cells' corners see best
     bool powersOfTwo = false;               // grid: along each axis, of the product nearest to `count`
     uint32_t count = knobs::count.value;    // probes; 0: the fewest that reach `coverage`; a grid takes 64
     float coverage = knobs::coverage.value; // share of the surface points that rays hit; when count is 0, grid apart

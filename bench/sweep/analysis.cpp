@@ -50,6 +50,11 @@ std::string methodName(std::string_view method)
     return std::string(found == names.end() ? method : found->second);
 }
 
+bool isPathTraced(std::string_view method)
+{
+    return method == kPathTracer || method == kFilteredPaths;
+}
+
 std::string idOf(const Json& point)
 {
     return point["id"].get<std::string>();
@@ -393,7 +398,7 @@ Json analyseScene(const std::vector<Json>& points)
     Tables tables(oursTraced, base), pathTables(ours, base);
     for (auto& [opponent, theirs] : opponents)
     {
-        if (opponent == kPathTracer || opponent == kFilteredPaths)
+        if (isPathTraced(opponent))
         {
             for (const Json* point : theirs) pathTables.compareWith(opponent, {}, *point);
             continue;
@@ -435,7 +440,7 @@ std::vector<std::string> answersOf(const Json& results)
             for (const Json& row : scene["analysis"]["equal"])
             {
                 const std::string method = row["method"];
-                if (row["what"] != question.what || row["error_key"] != question.key || method == kPathTracer || method == kFilteredPaths ||
+                if (row["what"] != question.what || row["error_key"] != question.key || isPathTraced(method) ||
                     (question.cost && row["cost_key"] != question.cost) || !row["theirs"].get<std::string>().ends_with("/default"))
                     continue;
                 // A scene where nothing of ours is good enough counts as such, however well others went.
