@@ -480,9 +480,11 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     for (uint32_t i = 1; i < frames && frame; ++i) frame = live.renderer->render(camera, i);
     if (!frame) return frame.error();
     if (point.settings.filteredPaths()) // direct light and emission are the paths' own: there is nothing to filter
+    {
+        const float* direct = live.paths.find("direct")->pixels.data();
         for (size_t i = 0; i < frame->beauty.size(); ++i)
-            frame->beauty[i] =
-                glm::make_vec3(&live.paths.find("direct")->pixels[3 * i]) + frame->diffuseIndirect[i] + frame->glossyIndirect[i];
+            frame->beauty[i] = glm::make_vec3(direct + 3 * i) + frame->diffuseIndirect[i] + frame->glossyIndirect[i];
+    }
     auto errors = errorsOf(lightLayers(*frame));
     if (!errors) return errors.error();
     json["error"] = std::move(*errors);
