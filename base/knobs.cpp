@@ -92,6 +92,8 @@ std::span<const KnobRow> knobRows()
                                               rowOf(resolution),
                                               rowOf(bounces),
                                               rowOf(converged),
+                                              rowOf(surfaceTexels),
+                                              rowOf(surfaceRays),
                                               rowOf(chart),
                                               rowOf(deviceMebibytes),
                                               rowOf(hostBytes),

@@ -267,6 +267,28 @@ inline constexpr Knob<float> converged{.name = "converged",
                                        .most = 1.0f,
                                        .inWords = "0, never",
                                        .what = "Stops before --bounces when one adds less than this share of all light"};
+inline constexpr uint32_t kSurfaceTexels[] = {0, 26, 52, 104};
+inline constexpr Knob<uint32_t> surfaceTexels{
+    .name = "surfaceTexels",
+    .option = "bake --surface-texels",
+    .member = "BakeSettings::surfaceTexels",
+    .value = 52,
+    .least = 0,
+    .most = 104,
+    .only = kSurfaceTexels,
+    .unit = "texels",
+    .what = "Side of a cube face of the surface light, at most that of the face itself; 0: none, and none with octahedral maps",
+    .buys = "diffuse light read where surfaces are; bake time, and 24 bytes a probe times its square",
+    .readme = true};
+inline constexpr Knob<uint32_t> surfaceRays{.name = "surfaceRays",
+                                            .option = "bake --surface-rays",
+                                            .member = "BakeSettings::surfaceRays",
+                                            .value = 64,
+                                            .least = 1,
+                                            .most = 1024,
+                                            .unit = "rays",
+                                            .what = "That gather light for each texel of the surface light",
+                                            .buys = "less blotchy diffuse light; bake time and 4 bytes of main memory a ray and texel"};
 inline constexpr std::string_view kCharts[] = {"cube", "octahedral"}; // in the order of gpu::kChartCube, kChartOctahedral
 inline constexpr Knob<std::string_view> chart{
     .name = "chart",
@@ -389,18 +411,19 @@ inline constexpr Knob<uint32_t> glossyRays{
     .what = "Glossy and diffuse rays",
     .buys = "rays, and samples of emitters and sky; noise falls with the root, time grows in proportion",
     .readme = true};
-inline constexpr std::string_view kDiffuse[] = {"irradiance", "patches", "traced"};
+inline constexpr std::string_view kDiffuse[] = {"surface", "irradiance", "patches", "traced"};
 inline constexpr Knob<std::string_view> diffuse{
     .name = "diffuse",
     .option = "render --diffuse",
-    .member = "IndirectEffects::patches, tracedDiffuse",
-    .value = "irradiance",
+    .member = "IndirectEffects::surfaceLight, patches, tracedDiffuse",
+    .value = "",
     .only = kDiffuse,
+    .inWords = "surface; irradiance where the light field holds no surface light",
     .what =
         "Where diffuse light comes from; irradiance and patches take emitters and sky from shadowed samples, traced has them in its rays, "
-        "of which there are as many as --samples",
+        "of which there are as many as --samples; surface has them baked",
     .buys =
-        "what surfaces reflect: read from a probe's prefiltered irradiance; from 216 patches that it sees, which is right about what is "
+        "light: read at the surfaces that probes see, without noise; read from a probe's prefiltered irradiance; from 216 patches that it sees, which is right about what is "
         "near, for about twice the time of diffuse light; or found by cosine-weighted rays (docs/light.md)",
     .readme = true};
 inline constexpr std::string_view kAreaShadows[] = {"maps", "field"};

@@ -77,6 +77,7 @@ public:
     uint64_t deviceBytes() const;
     bool holdsRadiance() const;    // as rays need it
     bool holdsPrefiltered() const; // as rough reflections need it
+    bool holdsSurfaceLight() const;
     bool holdsPatches() const;     // as diffuse light by patches needs them
     /// Names of the effects that its scene called for when it was baked (SceneEffect::name).
     const std::vector<std::string>& effects() const;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/closed_parts.h"
 #include "shaders/shared/brdf.h"
 
 namespace sconce
@@ -26,18 +27,6 @@ std::string percent(double share)
     char text[32];
     std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
     return text;
-}
-
-// For every vertex the first vertex with the same position, bit by bit but -0 and 0 alike: meshes repeat positions for their normals.
-std::vector<uint32_t> weld(const std::vector<vec3>& positions)
-{
-    std::vector<uint32_t> order(positions.size()), first(positions.size());
-    for (size_t i = 0; i < order.size(); ++i) order[i] = uint32_t(i);
-    const auto key = [&](uint32_t i) { return std::array<float, 3>{positions[i].x, positions[i].y, positions[i].z}; };
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-    for (size_t i = 0; i < order.size(); ++i)
-        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-    return first;
 }
 
 // Edges with one triangle only, and triangles that lie on another one, whichever way either faces.

@@ -3,10 +3,25 @@
 #define SCONCE_FIELD_SET 0
 #include "light_field.glsl"
 
+#ifdef SURFACE_LIGHT
+#include "shared/bake_passes.h"
+#define SCONCE_BOUNCE_PUSH
+layout(scalar, push_constant) uniform Push { BakePush push; };
+
+/// By the probe's own texels; where they don't show the point, as a pixel finds its light.
+vec3 bounceIrradiance(vec3 point, vec3 normal, vec3 viewer)
+{
+    vec4 own = surfaceTaps(push.probe, point - viewer, normal);
+    if (own.w > kSurfaceLeast) return own.xyz / own.w;
+    int reads = 0;
+    return surfaceLightAt(point, normal, point + 0.5 * field.voxel * normal, reads).light;
+}
+#else
 /// The leaf is asked half a voxel off the surface, on the side that the probe sees.
 vec3 bounceIrradiance(vec3 point, vec3 normal, vec3 viewer)
 {
     int reads = 0;
     return irradianceAt(point, normal, point + 0.5 * field.voxel * normal, reads);
 }
+#endif
 #include "bake_bounce.glsl"

@@ -4,7 +4,9 @@
 // iteration of the light transport over the probes' texels). That irradiance leaves out emission and sky: they are in the direct one. Whose weights
 // blend it: bounceIrradiance(), which is included before. Dispatch: ceil(N/8) twice x 6 (cube) or 1 (octahedral).
 layout(local_size_x = 8, local_size_y = 8) in;
+#ifndef SCONCE_BOUNCE_PUSH
 layout(scalar, push_constant) uniform Push { BakePush push; };
+#endif
 
 void main()
 {

@@ -11,6 +11,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = kBakeSurfaceBinding) uniform utexture2D surfaceImage; // [6 N][N], faces below each other; layout: bake_gbuffer.frag
 layout(set = 1, binding = kBakeDepthBinding) uniform texture2D depthImage;    // near / W, 0: sky
 
+layout(constant_id = kBakeAreaLightId) const bool kAreaLight = true;
+
 void main()
 {
     uvec3 at = gl_GlobalInvocationID;
@@ -43,7 +45,8 @@ void main()
     push.words.word[wordIndex] = packTexel(q, gradient.x, gradient.y);
 
     vec3 albedo = unpackRootOfColor(seen.x);
-    vec3 irradiance = directLight(p, shading, geometric);
+    vec3 irradiance = deltaLight(p, shading, geometric);
+    if (kAreaLight) irradiance += areaLight(p, shading, geometric);
     push.radiance.word[index] = packRadiance(emission + albedo * irradiance / kBrdfPi);
     if (!isNull(push.emitted)) push.emitted.word[index] = seen.w;
     push.surface.word[index] = max(packAlbedo(albedo, ditherOf(index)) | (packNormal8(shading) << 16), 1u); // 0 is the sky's

@@ -24,6 +24,7 @@ layout(set = SCONCE_FIELD_SET, binding = kFieldDistanceBinding) uniform utexture
 layout(set = SCONCE_FIELD_SET, binding = kFieldRadianceBinding) uniform utextureBuffer sconceRadiance;
 layout(set = SCONCE_FIELD_SET, binding = kFieldIrradianceBinding) uniform utextureBuffer sconceIrradiance;
 layout(set = SCONCE_FIELD_SET, binding = kFieldPrefilteredBinding) uniform utextureBuffer sconcePrefiltered;
+layout(set = SCONCE_FIELD_SET, binding = kFieldSurfaceBinding) uniform utextureBuffer sconceSurfaceLight;
 
 // Of a pass; LightField::constants() holds them.
 layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
@@ -60,6 +61,11 @@ uint prefilteredWord(uint index)
     if (byTexels()) return texelFetch(sconcePrefiltered, int(index)).x;
     return SconceWords(prefilteredAddress).word[index];
 }
+uint surfaceWord(uint index)
+{
+    if (byTexels()) return texelFetch(sconceSurfaceLight, int(index)).x;
+    return SconceWords(surfaceAddress).word[index];
+}
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 
 #include "shared/pure_text.h"
@@ -69,6 +75,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/probe_trace.h"
 #include "shared/prefiltered.h"
 #include "shared/light_lookup.h"
+#include "shared/surface_light.h"
 #include "shared/ray_query.h"
 /// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.
 RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return queryRay(origin, direction, normal); }

@@ -28,7 +28,8 @@ LightSample unshadowedLight(uint kind, uint i, vec3 p)
     {
         // A disc of the patch's area seen on its axis has exactly this form factor (Howell, "A Catalog of Radiation Heat Transfer
         // Configuration Factors", B-12 limit), so a receiver near the patch sees no singularity.
-        s.irradiance *= light.area * abs(dot(s.toLight, light.direction)) / (d2 + light.area / kBrdfPi);
+        float facing = -dot(s.toLight, light.direction);
+        s.irradiance *= light.area * (light.innerCone > 0.0 ? max(facing, 0.0) : abs(facing)) / (d2 + light.area / kBrdfPi);
         return s;
     }
     s.irradiance *= distanceAttenuation(sqrt(d2), light.range);
@@ -84,12 +85,19 @@ vec3 directLightOf(uint kind, uint i, vec3 p, vec3 shadingNormal, vec3 geometric
     return max(dot(shadingNormal, s.toLight), 0.0) * s.irradiance;
 }
 
-/// Irradiance of a surface from all lights, W/m^2.
-vec3 directLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal)
+/// Irradiance of a surface from lights of no extent, W/m^2.
+vec3 deltaLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal)
 {
     vec3 sum = vec3(0.0);
-    uint i = 0u;
-    for (; i < lightsHeader.deltaCount; ++i) sum += directLightOf(lights[i].type, i, p, shadingNormal, geometricNormal);
+    for (uint i = 0u; i < lightsHeader.deltaCount; ++i) sum += directLightOf(lights[i].type, i, p, shadingNormal, geometricNormal);
+    return sum;
+}
+
+/// The same from emitters and sky, by their samples.
+vec3 areaLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal)
+{
+    vec3 sum = vec3(0.0);
+    uint i = lightsHeader.deltaCount;
     uint emittersEnd = i + lightsHeader.emitterCount;
     for (; i < emittersEnd; ++i) sum += directLightOf(kLightEmitter, i, p, shadingNormal, geometricNormal);
     uint skyEnd = i + lightsHeader.skyCount;

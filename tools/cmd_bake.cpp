@@ -84,6 +84,7 @@ int runBake(const BakeOptions& options, const Context& context)
         json["stage_seconds"] = {{"scene", report.sceneSeconds},
                                  {"probes", report.probeSeconds},
                                  {"octree", report.octreeSeconds},
+                                 {"gather", report.gatherSeconds},
                                  {"bounces", report.bounceSeconds},
                                  {"prefilter", report.prefilterSeconds}};
         json["octree_on_device"] = report.octreeOnDevice;
@@ -114,6 +115,8 @@ void addBakeCommand(CLI::App& app, Context& context)
     addKnob(bake, "--resolution", settings.resolution, knobs::resolution, "TEXELS");
     addKnob(bake, "--bounces", settings.bounces, knobs::bounces);
     addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
+    addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
+    addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
     addChoice(bake, "--chart", settings.chart, knobs::chart);
     addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
     bake->add_option(

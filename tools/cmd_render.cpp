@@ -25,9 +25,10 @@ namespace
 const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_indirect", "glossy_indirect", "depth",  "normal", "albedo",
                                                "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
 
-constexpr std::string_view kIrradiance = knobs::kDiffuse[0], kPatches = knobs::kDiffuse[1], kTraced = knobs::kDiffuse[2];
+constexpr std::string_view kSurface = knobs::kDiffuse[0], kIrradiance = knobs::kDiffuse[1], kPatches = knobs::kDiffuse[2],
+                           kTraced = knobs::kDiffuse[3];
 constexpr std::string_view kMaps = knobs::kAreaShadows[0], kField = knobs::kAreaShadows[1];
-static_assert(kPatches == "patches" && kTraced == "traced" && kField == "field");
+static_assert(kSurface == "surface" && kPatches == "patches" && kTraced == "traced" && kField == "field");
 
 struct RenderOptions
 {
@@ -60,7 +61,8 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
         options.quality.take("--temporal", options.temporal, frame.effects.temporal);
         options.quality.take("--diffuse", options.diffuse,
-                             std::string(frame.effects.tracedDiffuse ? kTraced
+                             std::string(frame.effects.surfaceLight    ? kSurface
+                                         : frame.effects.tracedDiffuse ? kTraced
                                          : frame.effects.patches     ? kPatches
                                                                      : kIrradiance));
         options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
@@ -192,12 +194,18 @@ int runRender(RenderOptions options, const Context& context)
     settings.effects = plan->indirect();
     settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
-    settings.effects.tracedDiffuse = options.diffuse == kTraced;
-    settings.effects.patches = options.diffuse == kPatches;
+    const std::string diffuse = !options.diffuse.empty() ? options.diffuse : std::string(data->surfaceLight.empty() ? kIrradiance : kSurface);
+    if (diffuse == kSurface && data->surfaceLight.empty())
+        return fail(ErrorCode::badArgument,
+                    fmt::format("Light field '{}' holds no surface light; bake it with --surface-texels above 0, or give another --diffuse.",
+                                options.field));
+    settings.effects.surfaceLight = diffuse == kSurface;
+    settings.effects.tracedDiffuse = diffuse == kTraced;
+    settings.effects.patches = diffuse == kPatches;
     settings.effects.fieldShadows = options.areaShadows == kField;
     // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
     Result<DeviceScene> deviceScene =
-        DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects), consoleProgress(context));
+        DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects, data->info), consoleProgress(context));
     if (!deviceScene) return fail(deviceScene.error());
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
@@ -253,7 +261,7 @@ int runRender(RenderOptions options, const Context& context)
     json["samples"] = settings.glossyRays;
     json["trace_every"] = settings.traceEvery;
     json["rays_below"] = settings.raysBelow;
-    json["diffuse"] = options.diffuse;
+    json["diffuse"] = diffuse;
     json["area_shadows"] = options.areaShadows;
     json["temporal"] = settings.effects.temporal;
     json["frames"] = options.frames;

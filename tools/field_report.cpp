@@ -29,7 +29,8 @@ Json bytesJson(const FieldBytes& bytes)
             {"radiance", bytes.radiance},
             {"irradiance", bytes.irradiance},
             {"index", bytes.index},
-            {"prefiltered_radiance", bytes.prefiltered}};
+            {"prefiltered_radiance", bytes.prefiltered},
+            {"surface_light", bytes.surface}};
 }
 
 std::string megabytes(size_t bytes)
@@ -50,6 +51,7 @@ Json fieldJson(const FieldData& field)
     json["chart"] = chartName(info.chart);
     json["resolution"] = field.resolution;
     json["face_size"] = info.faceSize;
+    json["surface_size"] = info.surfaceSize;
     json["bounces"] = field.bounces;
     json["effects"] = field.effects;
     json["bytes"] = bytesJson(bytesByPart(field));

@@ -166,6 +166,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     bake.resolution = settings.resolution;
     bake.chart = settings.chart();
     bake.bounces = settings.bounces;
+    bake.surfaceTexels = settings.bakedSurfaceTexels();
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
     if (bake.grid && bake.chart == gpu::kChartOctahedral) bake.bounceShader = gridBouncePass();
@@ -178,6 +179,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
                                        {"resolution", bake.resolution},
                                        {"chart", bake.chart},
                                        {"bounces", bake.bounces},
+                                       {"surface", bake.surfaceTexels},
                                        {"voxels", bake.octree.voxels}});
     const std::filesystem::path file = cached("fields", key, ".sconce");
     if (const std::optional<Json> known = readJson(cached("fields", key, ".json")))
@@ -194,7 +196,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     if (!field) return field;
     for (const SceneEffect& effect : checkScene(desc.scene).effects)
         if (effect.called) field->effects.push_back(effect.name);
-    const Json baked = {{"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.bounceSeconds},
+    const Json baked = {{"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.gatherSeconds + report.bounceSeconds},
                         {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
     // The field before its report: both must be there to be used again, so that a run stopped in between bakes anew.
     if (auto status = saveField(*field, file); !status) return status.error();
@@ -324,7 +326,7 @@ Result<const DeviceScene*> SceneBench::sceneOf(const IndirectEffects& effects, c
     std::optional<DeviceScene>& scene = deviceScenes[effects.fieldShadows ? 1 : 0];
     if (!scene)
     {
-        const DeviceSceneDesc wanted = sceneForFrames({.fieldShadows = effects.fieldShadows});
+        const DeviceSceneDesc wanted = sceneForFrames({.fieldShadows = effects.fieldShadows}, {});
         auto uploaded = DeviceScene::create(gpu, desc.scene, fieldSpace(desc.scene.bounds()), wanted, progress);
         if (!uploaded) return uploaded.error();
         scene.emplace(std::move(*uploaded));
@@ -336,7 +338,7 @@ uint64_t SceneBench::bytesOf(const PointSettings& settings)
 {
     if (settings.pathTraced()) return 0;
     if (const std::optional<Volume> volume = settings.volume()) return uint64_t(settings.probes) * volumeWordsPerProbe(*volume) * 4;
-    return uint64_t(settings.probes) * bytesPerProbe(settings.chart(), settings.resolution);
+    return uint64_t(settings.probes) * bytesPerProbe(settings.chart(), settings.resolution, settings.bakedSurfaceTexels());
 }
 
 Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Progress& progress)

@@ -88,6 +88,7 @@ std::vector<SweptKnob> makeKnobs()
         knob("placement", place, placed, {"optimised", "skeleton", "balls"}, knobs::placement, SCONCE_FIELD(placement)),
         knob("resolution", bake, mapped, {"128", "256", "416", "512", "1024"}, knobs::resolution, SCONCE_FIELD(resolution)),
         knob("bounces", bake, placed, {"0", "1", "2", "4"}, knobs::bounces, SCONCE_FIELD(bounces)),
+        knob("surface texels", bake, fields, {"0", "26", "52", "104"}, knobs::surfaceTexels, SCONCE_FIELD(surfaceTexels)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),
         knob("low factor", trace, opponents, {}, knobs::lowFactor, SCONCE_FIELD(lowFactor)),
         knob("look-up bias", trace, volumes, {"0", "0.05", "0.1", "0.2", "0.4"}, knobs::lookUpBias, SCONCE_FIELD(lookUpBias)),
@@ -125,6 +126,11 @@ uint32_t PointSettings::chart() const
 {
     const std::optional<Baseline> baseline = opponent();
     return baseline && *baseline != Baseline::wang ? gpu::kChartOctahedral : gpu::kChartCube; // wang's maps are made from cube faces
+}
+
+uint32_t PointSettings::bakedSurfaceTexels() const
+{
+    return (method == "ours" || method == "ours-grid") && !frame.effects.patches ? surfaceTexels : 0;
 }
 
 std::span<const SweptKnob> sweptKnobs()

@@ -30,6 +30,7 @@ struct PointSettings
     std::string placement = std::string(knobs::placement.value); // optimised, skeleton (not refined afterwards), balls, grid
     uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
     uint32_t bounces = knobs::benchBounces.value;
+    uint32_t surfaceTexels = knobs::surfaceTexels.value; // of ours; patches are of fields without
     int octreeVoxels = knobs::octreeVoxels.value; // OctreeSettings::voxels
     uint32_t lowFactor = knobs::lowFactor.value;  // of an opponent; 0: bestLowFactor
     float lookUpBias = knobs::lookUpBias.value;   // of a volume of irradiance, metres
@@ -43,6 +44,7 @@ struct PointSettings
     std::optional<Baseline> opponent() const { return baselineNamed(method); }
     std::optional<Volume> volume() const { return volumeNamed(method); }
     uint32_t chart() const; // that the method reads
+    uint32_t bakedSurfaceTexels() const; // 0 for whoever doesn't read surface light
 };
 
 /// What a knob decides, and so what must be made anew when it changes.

@@ -15,6 +15,7 @@
 #include "runtime/bake/prefilter.h"
 #include "runtime/bake/probe_baker.h"
 #include "runtime/bake/probe_clearance.h"
+#include "runtime/bake/surface_baker.h"
 #include "runtime/field/field_space.h"
 #include "runtime/field/octree_builder.h"
 #include "runtime/field/tracer_cpu.h"
@@ -52,7 +53,9 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     if (!even) return knob_words::fault(knobs::resolution.name, knobText(settings.resolution), rangeText(knobs::resolution));
     if (!settings.scene.light.areaShadows)
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
-    const std::string fault = firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged)});
+    const std::string fault = firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
+                                          faultOf(knobs::surfaceTexels, settings.surfaceTexels),
+                                          faultOf(knobs::surfaceRays, settings.surfaceRays)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -132,7 +135,10 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     const uint64_t distance = info.wordsPerProbe, cube = octahedral ? distanceWordsPerProbe(gpu::kChartCube, info.faceSize / 2) : 0;
     const uint64_t light = radianceWordsPerProbe(info.chart, info.faceSize); // radiance, surfaces, direct light, emission
     // The octree is built from a copy of all maps on the device, which for a software device is main memory again.
-    const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 ? 3 : 2) * light + (emitters ? light : 0);
+    const uint64_t texels = 6ull * info.surfaceSize * info.surfaceSize; // of surface light: links, what bounces need, the light itself
+    const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 13 : 0));
+    const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 || surface > 0 ? 3 : 2) * light +
+                           (emitters ? light : 0) + surface;
     const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
     if (needed <= allowed) return success();
     return Error{ErrorCode::outOfMemory, fmt::format("A bake of {} probes with maps of {} texels takes about {} MiB of main memory, and it "
@@ -146,20 +152,22 @@ struct Bake
     FieldData field;
     FieldData cube;                                  // octahedral chart: the cube faces that octree and summaries are made from
     std::vector<uint32_t> surfaces, direct, emitted; // emitted is empty when the scene has no emitters
+    std::vector<gpu::SurfaceTexel> texels;           // empty without surface light
     const Progress& progress;
 
     bool octahedral() const { return field.info.chart == gpu::kChartOctahedral; }
 
     ProbeTarget target(size_t probe)
     {
-        const size_t words = field.info.wordsPerProbe, texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
-        const size_t irradiance = kIrradianceWordsPerProbe;
+        const size_t words = field.info.wordsPerProbe, light = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
+        const size_t irradiance = kIrradianceWordsPerProbe, points = texels.size() / field.probes.size();
         return {std::span(field.distance).subspan(probe * words, words),
-                std::span(field.radiance).subspan(probe * texels, texels),
-                std::span(surfaces).subspan(probe * texels, texels),
-                emitted.empty() ? std::span<uint32_t>() : std::span(emitted).subspan(probe * texels, texels),
+                std::span(field.radiance).subspan(probe * light, light),
+                std::span(surfaces).subspan(probe * light, light),
+                emitted.empty() ? std::span<uint32_t>() : std::span(emitted).subspan(probe * light, light),
                 std::span(field.irradiance).subspan(probe * irradiance, irradiance),
-                {}};
+                {},
+                std::span(texels).subspan(probe * points, points)};
     }
 
     Status cancelledIfAsked(std::string_view stage, size_t done, size_t count) const
@@ -170,7 +178,10 @@ struct Bake
 
     Status directLight(ProbeBaker& baker);
     Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
-    Status bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number, Spirv shader);
+    Result<LightField> asItIs(Gpu& gpu);
+    Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage, Spirv shader);
+    Status bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
+    Status surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
 };
 
 Status Bake::directLight(ProbeBaker& baker)
@@ -203,28 +214,97 @@ Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
     return success();
 }
 
-Status Bake::bounce(Gpu& gpu, ProbeBaker& baker, uint32_t number, Spirv shader)
+/// The whole field as it is now, on the device, so that the order of the probes doesn't matter. Without radiance: a bounce reads irradiance and
+/// what weighs it, or surface light, and the device has only that to hold.
+Result<LightField> Bake::asItIs(Gpu& gpu)
 {
-    // The whole field's irradiance as it was before this bounce, so that the order of the probes doesn't matter.
-    // Without radiance: a bounce reads irradiance and what weighs it, and the device has only that to hold.
     FieldData lit;
     lit.info = field.info;
     lit.probes = field.probes;
     lit.octree = field.octree;
     lit.irradiance = field.irradiance;
+    lit.surfaceLight = field.surfaceLight;
     lit.distance = std::move(field.distance); // tells which probes a wall hides; lent, since it is half of the field
     auto device = makeLightField(gpu, lit);
     field.distance = std::move(lit.distance);
-    if (!device) return device.error();
-    const std::string stage = fmt::format("bounce {}", number);
+    return device;
+}
+
+/// Every probe's radiance: its direct light and what its surfaces reflect of the field's.
+Status Bake::reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage, Spirv shader)
+{
     const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
         if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
-        auto status = baker.bakeBounce(field.probes[i].centre, *device, std::span(direct).subspan(i * texels, texels), target(i), shader);
+        const std::span<const uint32_t> own = std::span(direct).subspan(i * texels, texels);
+        auto status = baker.bakeBounce(uint32_t(i), field.probes[i].centre, lit, own, target(i), shader);
         if (!status) return status;
     }
     return success();
+}
+
+/// Bounces by the probes' own irradiance. Their number is a bound: each costs a gather a texel, and one that adds next to nothing is the last.
+Status Bake::bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent)
+{
+    double energy = spent.energy.back();
+    for (uint32_t b = 1; b <= settings.bounces; ++b)
+    {
+        auto lit = asItIs(gpu);
+        if (!lit) return lit.error();
+        if (auto status = reflect(*lit, baker, fmt::format("bounce {}", b), settings.bounceShader); !status) return status;
+        const double with = meanRadiance(field);
+        spent.energy.push_back(with - energy);
+        field.bounces = b;
+        energy = with;
+        if (spent.energy.back() < double(settings.converged) * with) break;
+    }
+    return success();
+}
+
+/// Light at the surfaces that probes see, and the probes' radiance of it.
+Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent)
+{
+    Stopwatch watch;
+    auto dark = asItIs(gpu);
+    if (!dark) return dark.error();
+    const uint32_t shadowRays = std::min(settings.surfaceRays, gpu::kMostShadowRays);
+    auto surfaces = SurfaceBaker::create(gpu, scene, *dark, texels,
+                                         {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal});
+    if (!surfaces) return surfaces.error();
+    for (size_t i = 0; i < field.probes.size(); ++i)
+    {
+        if (auto status = cancelledIfAsked("surface light", i, field.probes.size()); !status) return status;
+        if (auto status = surfaces->gather(uint32_t(i)); !status) return status;
+    }
+    spent.gatherSeconds = watch.lap();
+    // What surfaces send of direct light is in the probes' radiance already; so the light without a bounce adds only what it sends besides.
+    auto before = surfaces->meanSent();
+    // A frame shows light after one scattering more than what probes hold; here it reads what arrives, which has one fewer.
+    for (uint32_t b = 0; before && b <= settings.bounces + 1; ++b)
+    {
+        if (auto status = cancelledIfAsked(fmt::format("bounce {}", b), 0, 1); !status) return status;
+        if (auto status = surfaces->bounce(); !status) return status;
+        const auto sent = surfaces->meanSent();
+        if (!sent) return sent.error();
+        const double added = *sent - *before;
+        before = sent;
+        if (b == 0)
+        {
+            spent.energy.back() += added;
+            continue;
+        }
+        if (b > settings.bounces) break;
+        spent.energy.push_back(added);
+        field.bounces = b;
+        if (added < double(settings.converged) * *sent) break;
+    }
+    if (!before) return before.error();
+    field.surfaceLight.resize(texels.size());
+    if (auto status = surfaces->finish(field.surfaceLight); !status) return status;
+    auto lit = asItIs(gpu);
+    if (!lit) return lit.error();
+    return reflect(*lit, baker, "radiance", {});
 }
 
 } // namespace
@@ -245,7 +325,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     if (scene.triangles.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
     // The field's space before all else: probes, scene and octree are on the device in its units.
-    Bake bake{{}, {}, {}, {}, {}, progress};
+    Bake bake{{}, {}, {}, {}, {}, {}, progress};
     BakeReport spent;
     Stopwatch watch;
     gpu::LightFieldInfo& info = bake.field.info;
@@ -253,6 +333,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     info.sky = scene.sky;
     info.probeCount = uint32_t(probes.size());
     setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
+    info.surfaceSize = surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
     if (settings.grid)
     {
         info.gridX = uint32_t(settings.grid->count.x);
@@ -276,7 +357,10 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
     {
-        auto deviceScene = DeviceScene::create(**gpu, scene, info, settings.scene, progress);
+        DeviceSceneDesc sceneDesc = settings.scene;
+        if (info.surfaceSize > 0) // emitters are shadowed by rays, and rays find the sky
+            sceneDesc.light = {.emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false};
+        auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
         auto baker = ProbeBaker::create(**gpu, *deviceScene, info);
         if (!baker) return baker.error();
@@ -293,6 +377,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         bake.surfaces.resize(texels);
         if (emitters) bake.emitted.resize(texels);
         bake.field.irradiance.resize(probes.size() * kIrradianceWordsPerProbe);
+        bake.texels.resize(size_t(6) * info.surfaceSize * info.surfaceSize * probes.size());
         // Octree and summaries are made from cube faces, of which an octahedral field keeps none.
         if (bake.octahedral())
         {
@@ -307,22 +392,14 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
         spent.octreeSeconds = watch.lap();
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
-        if (settings.bounces > 0) bake.direct = bake.field.radiance;
-        double energy = meanRadiance(bake.field);
-        spent.energy.push_back(energy);
-        // Their number is a bound: a bounce costs a gather a texel, and one that adds next to nothing is the last.
-        for (uint32_t b = 1; b <= settings.bounces; ++b)
-        {
-            if (auto status = bake.bounce(**gpu, **baker, b, settings.bounceShader); !status) return status.error();
-            const double with = meanRadiance(bake.field);
-            spent.energy.push_back(with - energy);
-            bake.field.bounces = b;
-            energy = with;
-            if (spent.energy.back() < double(settings.converged) * with) break;
-        }
-        spent.bounceSeconds = watch.lap();
+        if (settings.bounces > 0 || info.surfaceSize > 0) bake.direct = bake.field.radiance;
+        spent.energy.push_back(meanRadiance(bake.field));
+        const Status bounced = info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
+                                                    : bake.bounces(**gpu, **baker, settings, spent);
+        if (!bounced) return bounced.error();
+        spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
         // Made from the light of the last bounce; only then may the radiance go that they are made from.
-        makePatches(bake.field, bake.surfaces, bake.emitted);
+        if (info.surfaceSize == 0) makePatches(bake.field, bake.surfaces, bake.emitted);
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};
         spent.prefilterSeconds = watch.lap();

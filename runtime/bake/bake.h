@@ -23,6 +23,8 @@ struct BakeSettings
     uint32_t chart = uint32_t(knobs::chart.place()); // kChartCube, or kChartOctahedral, which the grid baselines need
     uint32_t bounces = knobs::bounces.value;         // times the baked light is re-injected at most; each costs one gather a texel
     float converged = knobs::converged.value;        // stop earlier, after a bounce that adds less than this share of all light; 0: never
+    uint32_t surfaceTexels = knobs::surfaceTexels.value; // texels a side of a cube face of the surface light; 0: none
+    uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
     DeviceSceneDesc scene;                           // textures and lights
     std::vector<std::string> effects;                // names of the plan's effects, kept in the file for reports
     bool radiance = true;                            // keep the maps' radiance, which traced rays need: half of the field
@@ -43,6 +45,7 @@ struct BakeReport
     double probeSeconds = 0.0;   // faces, direct light, chains, first irradiance
     double octreeSeconds = 0.0;  // summaries and octree
     bool octreeOnDevice = false; // else the maps didn't fit the device's memory and the host built it: the same bytes, later
+    double gatherSeconds = 0.0;  // rays of the surface light
     double bounceSeconds = 0.0;
     double prefilterSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;

@@ -8,6 +8,7 @@
 #include "runtime/vulkan/nan_scan.h"
 
 #include "spirv/bake_bounce_comp.h"
+#include "spirv/bake_bounce_surface_comp.h"
 #include "spirv/bake_chain_comp.h"
 #include "spirv/bake_downsample_moments_comp.h"
 #include "spirv/bake_downsample_radiance_comp.h"
@@ -19,6 +20,7 @@
 #include "spirv/bake_octahedral_comp.h"
 #include "spirv/bake_octahedral_low_comp.h"
 #include "spirv/bake_surface_comp.h"
+#include "spirv/bake_texels_comp.h"
 
 namespace sconce
 {
@@ -78,13 +80,14 @@ Status ProbeBaker::createBuffers()
         const char* what;
     };
     const uint64_t transferWords =
-        uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWordsPerProbe + (octahedral ? faceTexels : 0);
+        uint64_t(info.wordsPerProbe) + 4ull * radianceWords + kIrradianceWordsPerProbe + (octahedral ? faceTexels : 0) + texelWords();
     std::vector<Need> needs = {{words, info.wordsPerProbe, MemoryUse::device, "A probe's distance words"},
                                {light, 4ull * radianceWords, MemoryUse::device, "A probe's radiance"},
                                // Six faces of 32 x 32 cells, four words each: more than the octahedral map's 64 x 64 (recordGather).
                                {cells, 4ull * 6 * 32 * 32, MemoryUse::device, "A probe's coarse cells"},
                                {irradiance, kIrradianceWordsPerProbe, MemoryUse::device, "A probe's irradiance"},
                                {transfer, transferWords, MemoryUse::readback, "The bake's transfer buffer"}};
+    if (info.surfaceSize > 0) needs.push_back({texels, texelWords(), MemoryUse::device, "A probe's surface texels"});
     if (octahedral)
     {
         needs.push_back({faceWords, faceTexels, MemoryUse::device, "A probe's face words"});
@@ -134,12 +137,14 @@ Status ProbeBaker::createPipelines()
         Spirv code;
         std::span<const VkDescriptorSetLayout> sets;
     };
+    const ShaderConstant areaLight{gpu::kBakeAreaLightId, info.surfaceSize == 0 ? 1u : 0u};
     for (const Pass& pass : {Pass{surfacePass, bake_surface_comp, sceneAndImages}, Pass{chainPass, bake_chain_comp, {}},
+                             Pass{texelPass, bake_texels_comp, {}},
                              Pass{octahedralPass, bake_octahedral_comp, imagesOnly}, Pass{lowPass, bake_octahedral_low_comp, {}},
                              Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
                              Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
     {
-        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush));
+        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush), std::span(&areaLight, 1));
         if (!made) return made.error();
         pass.pipeline = std::move(*made);
     }
@@ -162,6 +167,9 @@ gpu::BakePush ProbeBaker::pushFor(vec3 centre) const
     push.chart = info.chart;
     push.sky = info.sky;
     push.skyDistance = 2.0f * info.diagonal;
+    push.texels = info.surfaceSize > 0 ? texels.address() : 0;
+    push.surfaceSize = info.surfaceSize;
+    push.allLight = info.surfaceSize > 0 ? 1 : 0;
     return push;
 }
 
@@ -264,6 +272,7 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
         push.level = 0; // the far bounds
         dispatch(cmd, chainPass, {}, push, uint32_t(std::ceil(std::sqrt(double(push.faceWords - n * n)))), 6);
         scanBuffer(gpu, cmd, "bake chain", words, {.kind = gpu::kScanNearness, .count = info.wordsPerProbe});
+        if (info.surfaceSize > 0) dispatch(cmd, texelPass, {}, push, info.surfaceSize, 6);
         return;
     }
     scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
@@ -307,8 +316,9 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
     const VkDeviceSize faceBytes = octahedral ? VkDeviceSize(6) * info.faceSize * info.faceSize * 4 : 0;
     assert(target.distance.size_bytes() == wordBytes && target.radiance.size() == radianceWords && target.surface.size() == radianceWords &&
            target.emitted.size() == (emitters ? radianceWords : 0) && target.irradiance.size() == kIrradianceWordsPerProbe &&
-           target.faces.size_bytes() == faceBytes);
+           target.faces.size_bytes() == faceBytes && target.texels.size_bytes() == 4 * texelWords());
     const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWordsPerProbe * 4;
+    const VkDeviceSize texelsAt = facesAt + faceBytes;
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
@@ -320,6 +330,7 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
             copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
             copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
             if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
+            if (texels) copyOut(cmd, std::array{VkBufferCopy{0, texelsAt, 4 * texelWords()}}, texels);
             // The fence that submit() waits for says that the copies are done, not that the host sees them: that takes a barrier to the
             // host's stage.
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
@@ -333,16 +344,18 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
         if (!part.empty()) std::memcpy(part.data(), from, part.size_bytes());
         from += part.size_bytes();
     }
+    if (texels) std::memcpy(target.texels.data(), from, target.texels.size_bytes());
     return success();
 }
 
-Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
+Status ProbeBaker::bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
                               Spirv bounceShader)
 {
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
-        auto made = Pipeline::compute(gpu, bounceShader.empty() ? Spirv(bake_bounce_comp) : bounceShader, sets, sizeof(gpu::BakePush),
+        const Spirv own = info.surfaceSize > 0 ? Spirv(bake_bounce_surface_comp) : Spirv(bake_bounce_comp);
+        auto made = Pipeline::compute(gpu, bounceShader.empty() ? own : bounceShader, sets, sizeof(gpu::BakePush),
                                       shaderConstants(field));
         if (!made) return made.error();
         bouncePass = std::move(*made);
@@ -368,7 +381,9 @@ Status ProbeBaker::bakeBounce(vec3 centre, const LightField& field, std::span<co
                           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
             const VkDescriptorSet sets[] = {field.descriptorSet()};
-            dispatch(cmd, bouncePass, sets, pushFor(centre), info.faceSize, octahedral ? 1 : 6);
+            gpu::BakePush push = pushFor(centre);
+            push.probe = probe;
+            dispatch(cmd, bouncePass, sets, push, info.faceSize, octahedral ? 1 : 6);
             scanBuffer(gpu, cmd, "bake bounce", light, {.kind = gpu::kScanRadiance, .count = radianceWords});
             recordGather(cmd, false);
             copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);

@@ -22,21 +22,24 @@ struct ProbeTarget
     std::span<uint32_t> emitted;    // R11G11B10F a radiance texel; empty when the scene has no emitters
     std::span<uint32_t> irradiance; // [kIrradianceSize^2][2]
     std::span<uint32_t> faces;      // octahedral chart: level 0 words of the cube faces it was resampled from; else empty
+    std::span<gpu::SurfaceTexel> texels; // [6 surfaceSize^2]; empty without surface light
 };
 
 /// The GPU's part of a bake, one probe at a time: each call submits one command buffer and waits.
 class ProbeBaker
 {
 public:
-    /// @param faceSize  texels a side of the rasterised faces, and of the octahedral map when that is the chart
+    /// @param info  its surfaceSize says whether there will be surface light; direct light is then of what has no extent alone, and probes'
+    ///              irradiance of all light, emission and sky too
     static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info);
 
     /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
     Status bakeDirect(vec3 centre, const ProbeTarget& target);
     /// Radiance = direct + what the surfaces reflect of the field's irradiance; then the probe's irradiance of that, moments untouched.
+    /// With surface light, which the field must hold by then, what the surfaces reflect of that.
     /// @param direct        the probe's radiance after bakeDirect
     /// @param bounceShader  BakeSettings::bounceShader; the first one that a baker is given stays
-    Status bakeBounce(vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
+    Status bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
                       Spirv bounceShader);
 
 private:
@@ -53,6 +56,7 @@ private:
                   uint32_t width, uint32_t layers);
     void copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from);
     gpu::BakePush pushFor(vec3 centre) const;
+    uint32_t texelWords() const { return 6 * info.surfaceSize * info.surfaceSize * uint32_t(sizeof(gpu::SurfaceTexel) / 4); }
 
     Gpu& gpu;
     const DeviceScene& scene;
@@ -62,11 +66,12 @@ private:
     uint32_t radianceWords = 0; // of the chart
     GpuImage surfaceImage, depthImage;
     DescriptorSet images;
-    Pipeline opaque, masked, surfacePass, chainPass, octahedralPass, lowPass, bouncePass;
+    Pipeline opaque, masked, surfacePass, chainPass, texelPass, octahedralPass, lowPass, bouncePass;
     std::array<Pipeline, 2> downsample, gather; // radiance, moments
     Buffer faceWords, faceLight;                // octahedral only: the faces' words, and their radiance, surfaces and emission
     Buffer words, light;                        // of the chart: distance words; radiance, surfaces, emission, then direct radiance
     Buffer cells, irradiance;
+    Buffer texels; // of the surface light; null without
     Buffer transfer; // mapped
     SceneDraws draws;
 };

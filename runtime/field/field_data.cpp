@@ -1,5 +1,6 @@
 #include "runtime/field/field_data.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "shaders/shared/pure.h"
@@ -19,7 +20,8 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.distance = distanceBytes - bytes.normals;
     bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
     bytes.radiance = field.radiance.size() * sizeof(uint32_t) + bytes.prefiltered;
-    bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t);
+    bytes.surface = field.surfaceLight.size() * sizeof(uint32_t);
+    bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface;
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
 }
@@ -46,13 +48,18 @@ uint32_t chartSize(uint32_t chart, uint32_t resolution)
     return chart == gpu::kChartCube ? resolution / 2 : resolution;
 }
 
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution)
+uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels)
 {
-    const uint32_t size = chartSize(chart, resolution);
+    return chart == gpu::kChartCube ? std::min(surfaceTexels, faceSize) : 0;
+}
+
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels)
+{
+    const uint32_t size = chartSize(chart, resolution), surface = surfaceSizeOf(chart, size, surfaceTexels);
     const size_t words =
         size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
-    const size_t patches = chart == gpu::kChartCube ? size_t(2) * gpu::kPatches : 0;
-    return (words + patches) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+    const size_t patches = chart == gpu::kChartCube && surface == 0 ? size_t(2) * gpu::kPatches : 0;
+    return (words + patches + size_t(6) * surface * surface) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
 }
 
 } // namespace sconce

@@ -8,6 +8,7 @@
 
 #include <glm/glm.hpp>
 
+#include "base/knobs.h"
 #include "shaders/shared/light_field.h"
 #include "svo/octree.h"
 
@@ -28,6 +29,8 @@ struct FieldData
     std::vector<uint32_t> prefiltered; // [probe][kPrefilteredWords]: R11G11B10F radiance, layout: shaders/shared/prefiltered.h
     std::vector<uint32_t> patches; // [probe][face][v][u][2], cube faces only: half q | normal 8+8 << 16, then R11G11B10F radiance without
                                    // emission and sky, of what is seen through a window of kPatchSide^2 a face: see patchIrradiance()
+    std::vector<uint32_t> surfaceLight; // [probe][face][y][x], info.surfaceSize texels a side, RGB9E5: shaders/shared/surface_light.h;
+                                        // empty: baked without
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -39,8 +42,9 @@ struct FieldData
 /// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.
 struct FieldBytes
 {
-    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches
+    size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches and surface light
     size_t prefiltered = 0;                                                    // of the radiance
+    size_t surface = 0;                                                        // surface light, of the irradiance
     size_t total() const { return distance + normals + radiance + irradiance + index; }
 };
 FieldBytes bytesByPart(const FieldData& field);
@@ -56,6 +60,10 @@ inline constexpr uint32_t kIrradianceWordsPerProbe = 2 * gpu::kIrradianceSize * 
 uint32_t chartSize(uint32_t chart, uint32_t resolution);
 
 /// Bytes that every further probe adds to a light field, index apart: what a budget of memory is divided by.
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution);
+/// @param surfaceTexels  BakeSettings::surfaceTexels
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value);
+
+/// Texels a side of a face of the surface light that a bake makes, where so many are asked for; 0 with octahedral maps.
+uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels);
 
 } // namespace sconce

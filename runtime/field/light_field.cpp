@@ -91,7 +91,8 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     const Part parts[] = {{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding},
                           {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding},
                           {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
-                          {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding}};
+                          {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding},
+                          {made.surface, field.surfaceLight, "surface light", gpu::kFieldSurfaceBinding}};
     // All or none: one way of reading is compiled into each shader.
     made.byTexels =
         access == WordAccess::texelBuffers &&
@@ -134,7 +135,8 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
                                                {gpu::kFieldDistanceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldRadianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldIrradianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
-                                               {gpu::kFieldPrefilteredBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+                                               {gpu::kFieldPrefilteredBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldSurfaceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
@@ -153,7 +155,8 @@ Status LightField::State::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const gpu::FieldBlock values{info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address()};
+    const gpu::FieldBlock values{info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(),
+                                 surface.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 
@@ -203,6 +206,11 @@ bool LightField::holdsRadiance() const
 bool LightField::holdsPrefiltered() const
 {
     return shared->prefiltered.size() > 0;
+}
+
+bool LightField::holdsSurfaceLight() const
+{
+    return shared->surface.size() > 0;
 }
 
 bool LightField::holdsPatches() const

@@ -14,7 +14,7 @@ struct LightField::State
 {
     std::shared_ptr<Gpu> gpu;
     gpu::LightFieldInfo info{};
-    Buffer block, probes, distance, radiance, irradiance, prefiltered, patches;
+    Buffer block, probes, distance, radiance, irradiance, prefiltered, surface, patches;
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
     GpuImage octree;
     DescriptorSet set;

@@ -87,10 +87,12 @@ enum Section : uint32_t
     octreeTexels,
     prefiltered, // since version 3
     patches,     // since version 4
+    surface,     // since version 5
     sectionCount
 };
 constexpr const char* kSectionNames[sectionCount] = {"meta",       "info",   "probes",        "distance",    "radiance",
-                                                     "irradiance", "octree", "octree texels", "prefiltered", "patches"};
+                                                     "irradiance", "octree", "octree texels", "prefiltered", "patches",
+                                                     "surface light"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader
@@ -133,6 +135,8 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
     if (i.chart != gpu::kChartCube && i.chart != gpu::kChartOctahedral) return fmt::format("its chart {} is unknown", i.chart);
     if (i.faceSize < 8 || i.faceSize > 4096 || i.faceSize % 4 != 0)
         return fmt::format("its map size {} is not a multiple of 4 from 8 to 4096", i.faceSize);
+    if (i.surfaceSize > i.faceSize || (i.surfaceSize > 0 && i.chart != gpu::kChartCube))
+        return fmt::format("its surface light of {} texels a side does not fit its maps", i.surfaceSize);
     if (i.probeCount > kMostProbes) return fmt::format("its probe count {} is above {}", i.probeCount, kMostProbes);
     if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize)) return "its words per probe disagree with its map size";
     if (i.chart == gpu::kChartCube && i.topLevel != coarsestLevel(i.faceSize)) return "its coarsest level disagrees with its map size";
@@ -150,11 +154,12 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
         product({n, gpu::kPrefilteredWords, 4}),
         product({n, gpu::kPatches, 8}),
+        product({n, 6, i.surfaceSize, i.surfaceSize, 4}),
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
-        const bool optional =
-            section == radiance || section == prefiltered || section == patches; // what no surface of the scene calls for is left out
+        const bool optional = section == radiance || section == prefiltered || section == patches ||
+                              section == surface; // what no surface of the scene calls for is left out
         if (expected[section] != rawBytes[section] && !(optional && rawBytes[section] == 0))
             return fmt::format("its section '{}' has {} bytes where its info calls for another size", kSectionNames[section],
                                rawBytes[section]);
@@ -481,6 +486,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
         std::as_bytes(std::span(field.octree.texels)),
         std::as_bytes(std::span(field.prefiltered)),
         std::as_bytes(std::span(field.patches)),
+        std::as_bytes(std::span(field.surfaceLight)),
     };
     uint64_t rawBytes[sectionCount], blockCount = 0;
     for (uint32_t section = 0; section < sectionCount; ++section)
@@ -553,6 +559,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     field.octree.texels.resize(rawBytes[octreeTexels] / sizeof(uint16_t));
     field.prefiltered.resize(rawBytes[prefiltered] / sizeof(uint32_t));
     field.patches.resize(rawBytes[patches] / sizeof(uint32_t));
+    field.surfaceLight.resize(rawBytes[surface] / sizeof(uint32_t));
     const std::pair<Section, std::span<std::byte>> parts[] = {
         {meta, std::as_writable_bytes(std::span(text))},
         {probes, std::as_writable_bytes(std::span(field.probes))},
@@ -562,6 +569,7 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {octreeTexels, std::as_writable_bytes(std::span(field.octree.texels))},
         {prefiltered, std::as_writable_bytes(std::span(field.prefiltered))},
         {patches, std::as_writable_bytes(std::span(field.patches))},
+        {surface, std::as_writable_bytes(std::span(field.surfaceLight))},
     };
     for (const auto& [section, raw] : parts)
         if (Status status = readInto(section, raw); !status) return status.error();

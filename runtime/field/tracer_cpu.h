@@ -84,6 +84,10 @@ template <class Real> struct LightFieldTwin
     {
         return source.prefiltered[index];
     }
+    uint surfaceWord(uint index) const
+    {
+        return source.surfaceLight[index];
+    }
     uvec4 octreeTexel(ivec3 p) const
     {
         const glm::uvec3 size = source.octree.textureSize();
@@ -103,6 +107,8 @@ template <class Real> struct LightFieldTwin
 #include "shaders/shared/prefiltered.h"
 
 #include "shaders/shared/light_lookup.h"
+
+#include "shaders/shared/surface_light.h"
 
 #include "shaders/shared/ray_query.h"
 };

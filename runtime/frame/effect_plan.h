@@ -15,10 +15,10 @@ namespace sconce
 struct IndirectEffects
 {
     bool diffuse = true; // diffuse light
-    bool tracedDiffuse =
-        knobs::diffuse.is("traced"); // by traced rays, emitters and sky seen by them; else prefiltered irradiance, which has neither
-    bool patches = knobs::diffuse.is(
-        "patches"); // read diffuse light from the probes' patches, not from prefiltered irradiance; nothing where it is traced
+    bool surfaceLight = true;   // diffuse light from the surface light, where the field holds it and the next two don't say otherwise; else
+                                // from prefiltered irradiance
+    bool tracedDiffuse = false; // by traced rays, emitters and sky seen by them
+    bool patches = false;       // from the probes' patches; nothing where it is traced
     bool fieldShadows = knobs::areaShadows.is("field"); // emitters' and the sky's samples shadowed by rays through the light field, not by
                                                         // maps; nothing where rays give diffuse light
     bool rough = true;                     // reflections from prefiltered radiance, of surfaces rougher than FrameView::raysBelow

@@ -7,6 +7,7 @@
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/gather_light_comp.h"
 #include "spirv/reconstruct_comp.h"
+#include "spirv/surface_light_comp.h"
 #include "spirv/trace_glossy_comp.h"
 
 namespace sconce
@@ -25,8 +26,8 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
     if (desc.effects.diffuse && desc.effects.patches && !desc.effects.tracedDiffuse && !field.holdsPatches())
-        return "the light field holds no patches: it is older, or its maps are octahedral; bake it again with cube faces, or leave patches "
-               "out";
+        return "the light field holds no patches: it holds surface light, is older, or its maps are octahedral; bake it again with cube "
+               "faces and --surface-texels 0, or leave patches out";
     const bool rays = desc.effects.glossy || desc.effects.mirror || (desc.effects.diffuse && desc.effects.tracedDiffuse);
     if (rays && !field.holdsRadiance() && !field.holdsPrefiltered())
         return "the light field holds no radiance; bake it with the effect 'glossy', or leave 'glossy', 'mirror' and traced diffuse light "
@@ -133,7 +134,12 @@ Status IndirectLight::State::make()
     }
     if (gathersDiffuse() || effects.rough)
         if (auto s = makeGather(); !s) return s;
-    if (effects.diffuse && effects.tracedDiffuse)
+    if (readsSurfaces())
+    {
+        if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
+        if (auto s = makePass(surfacePass, surfaceSet, surface_light_comp, {{gpu::kSurfaceDiffuseBinding, &diffuseImage}}, {}); !s) return s;
+    }
+    if (tracesDiffuse())
     {
         if (auto s = makeTrace(gpu::kTermDiffuse, diffuseImage, diffusePass, diffuseSet); !s) return s;
         if (auto s = makeFill(gpu::kTermDiffuse, diffuseImage, diffuseFill, diffuseFillSet); !s) return s;
@@ -164,6 +170,7 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
     for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet},
                                     {&mirrorPass, &mirrorSet},
                                     {&diffusePass, &diffuseSet},
+                                    {&surfacePass, &surfaceSet},
                                     {&gatherPass, &gatherSet},
                                     {&glossyFill, &glossyFillSet},
                                     {&diffuseFill, &diffuseFillSet}})
@@ -217,6 +224,8 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
     pass(gatherPass, gatherSet, gatherList(), "gather light");
     scan("gather light", {&diffuseImage, &roughImage});
+    pass(surfacePass, surfaceSet, gpu::kTermDiffuse, "surface light");
+    scan("surface light", {&diffuseImage});
     pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace", everyLog());
     scan("diffuse trace", {&diffuseImage});
     pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace", everyLog());

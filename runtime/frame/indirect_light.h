@@ -29,8 +29,8 @@ struct IndirectLight::State
     Buffer frame;
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
-    DescriptorSet glossySet, mirrorSet, diffuseSet, gatherSet, glossyFillSet, diffuseFillSet;
-    Pipeline glossyPass, mirrorPass, diffusePass, gatherPass, glossyFill, diffuseFill;
+    DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, glossyFillSet, diffuseFillSet;
+    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, gatherPass, glossyFill, diffuseFill;
     Denoiser denoiser;
 
     State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes);
@@ -38,6 +38,12 @@ struct IndirectLight::State
     void setInputs(const FrameInputs& inputs);
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
     uint64_t deviceBytes() const;
+    /// Whether diffuse light is read from the field's surface light, which has no noise and all sources but the host's in it.
+    bool readsSurfaces() const
+    {
+        const IndirectEffects& e = desc.effects;
+        return e.diffuse && e.surfaceLight && !e.tracedDiffuse && !e.patches && field.holdsSurfaceLight();
+    }
 
 private:
     Status makeImage(GpuImage& target, VkFormat format, const char* what);
@@ -52,7 +58,8 @@ private:
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
     uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
-    bool gathersDiffuse() const { return desc.effects.diffuse && !desc.effects.tracedDiffuse; }
+    bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
+    bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }
     uint32_t gatherList() const // of the tiles that the gathering pass runs on
     {
         return !gathersDiffuse() ? gpu::kTermRough : desc.effects.rough ? gpu::kListGathered : gpu::kTermDiffuse;

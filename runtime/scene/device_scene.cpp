@@ -114,10 +114,10 @@ VkSamplerCreateInfo samplerInfo(VkFilter filter, VkSamplerAddressMode wrap)
 
 } // namespace
 
-DeviceSceneDesc sceneForFrames(const IndirectEffects& effects)
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field)
 {
     DeviceSceneDesc desc;
-    if (!effects.diffuse || effects.tracedDiffuse)
+    if (!effects.diffuse || field.surfaceSize > 0 || effects.tracedDiffuse)
         desc.light.emitterSamples = desc.light.skySamples = 0;
     else if (effects.fieldShadows)
     {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/numbers.h"
+#include "scene/closed_parts.h"
 
 namespace sconce
 {
@@ -46,6 +47,8 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         area += own;
     }
     if (!(power > 0.0)) return;
+    // A back that nobody sees lights nothing: shadows are not exact enough to keep the light of a small globe's far side in it.
+    const std::vector<Outside> outside = outsideOfParts(scene);
     // Half by power and half by area: a dim lamp alone in its room has samples beside bright ones elsewhere.
     double shares = 0.0;
     for (Emitter& emitter : emitters)
@@ -70,7 +73,8 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         gpu::GpuLight light{};
         light.type = gpu::kLightEmitter;
         light.position = (point - space.origin) / space.scale;
-        light.direction = geometricNormal(scene, emitter.triangle);
+        light.direction = geometricNormal(scene, emitter.triangle) * (outside[emitter.triangle] == Outside::back ? -1.0f : 1.0f);
+        light.innerCone = outside[emitter.triangle] == Outside::both ? 0.0f : 1.0f;
         light.intensity = emitter.emission;
         // About count * share samples fall on an emitter; each stands for its part of the area.
         light.area = float(emitter.area / (count * emitter.share));

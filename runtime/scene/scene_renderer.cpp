@@ -115,7 +115,7 @@ Status SceneRenderer::make()
         if (auto s = image(*target, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
     for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
                                         {&beauty, "picture", true},
-                                        {&scratch, "scratch of the diffuse filter", effects.diffuse},
+                                        {&scratch, "scratch of the diffuse filter", effects.diffuse && !indirect->state().readsSurfaces()},
                                         {&diffuseLayer, "diffuse layer", settings.layers && effects.diffuse},
                                         {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
     {
@@ -161,7 +161,7 @@ Status SceneRenderer::make()
     directSet.write(gpu::kDirectNormalBinding, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(gpu::kDirectLightBinding, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
 
-    if (effects.diffuse)
+    if (effects.diffuse && !indirect->state().readsSurfaces()) // which has no noise to filter
         if (auto s = makeDiffuse(); !s) return s;
     return makeCompose();
 }
@@ -169,7 +169,8 @@ Status SceneRenderer::make()
 bool SceneRenderer::hasAreaLight() const
 {
     const gpu::LightsHeader& lights = scene.lights().header;
-    return !settings.effects.tracedDiffuse && lights.emitterCount + lights.skyCount > 0; // traced light has them in it
+    // Surface light and traced light have them in them, and so has the probes' irradiance of a field with surface light.
+    return !settings.effects.tracedDiffuse && !field.holdsSurfaceLight() && lights.emitterCount + lights.skyCount > 0;
 }
 
 /// Light of emitters and sky, and the filter over all diffuse light.
@@ -242,7 +243,8 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const Dev
                                           settings.roughness ? faultOf(knobs::roughness, *settings.roughness) : std::string()});
     if (!fault.empty()) return Error{ErrorCode::badArgument, fault};
     const bool mapless = std::ranges::any_of(scene.lights().lights, [](const gpu::GpuLight& l) { return l.shadowLayer == kNoShadowMap; });
-    if (mapless && settings.effects.diffuse && !settings.effects.tracedDiffuse && !settings.effects.fieldShadows)
+    if (mapless && settings.effects.diffuse && !field.holdsSurfaceLight() && !settings.effects.tracedDiffuse &&
+        !settings.effects.fieldShadows)
         return Error{ErrorCode::badArgument,
                      "The scene's emitters and sky have no shadow maps; make it with sceneForFrames() of the same effects, or ask for "
                      "fieldShadows"};

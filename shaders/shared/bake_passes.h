@@ -12,6 +12,24 @@ SCONCE_STRUCTS_BEGIN
 const uint kBakeSurfaceBinding = 0u; // layout: bake_gbuffer.frag
 const uint kBakeDepthBinding = 1u;
 
+/// What a bounce needs of a texel of surface light: means over the distance texels under it that lie on its surface.
+struct SurfaceTexel
+{
+    uint albedo; // packRootOfColor
+    uint normal; // shading normal, 8 + 8 bits, and kSurfaceKnown; 0: sky
+    uint sent;   // radiance that the surface sends of lights whose direct light is the host's, RGB9E5
+};
+SCONCE_CHECK_SIZE(SurfaceTexel, 12);
+const uint kSurfaceKnown = 0x10000u;
+
+#ifdef __cplusplus
+#define SCONCE_BUFFER(name, type)
+#else
+#define SCONCE_BUFFER(name, type) layout(buffer_reference, scalar, buffer_reference_align = 4) buffer name { type value[]; };
+#endif
+SCONCE_BUFFER(SurfaceTexels, SurfaceTexel)
+SCONCE_BUFFER(SurfaceFloats, vec4)
+
 struct BakePush
 {
     SCONCE_ADDRESS(BakeWords) words;    // distance words of the probe
@@ -27,8 +45,36 @@ struct BakePush
     vec3 sky;
     float skyDistance;  // that the moments count for sky, field units
     SCONCE_ADDRESS(BakeWords) emitted; // emission a radiance texel, R11G11B10F; null: the scene has no emitters
+    SCONCE_ADDRESS(SurfaceTexels) texels;  // SurfaceTexel[6][surfaceSize][surfaceSize]
+    uint surfaceSize;
+    uint probe;
+    uint allLight;      // 1: the probe's irradiance has emission and sky in it
+    uint unused;
 };
-SCONCE_CHECK_SIZE(BakePush, 88);
+SCONCE_CHECK_SIZE(BakePush, 112);
+
+const uint kBakeAreaLightId = 0u; // bake_surface.comp: whether direct light has emitters and sky in it, by their shadow maps
+
+// Where a gathering ray of a texel ended: the index of another texel, whose light it brings, or one of these.
+const uint kLinkSky = 0xffffffffu;
+const uint kLinkNone = 0xfffffffeu; // nothing is known of it
+
+/// Of the passes that gather light at surfaces, over one probe's texels.
+struct SurfacePush
+{
+    SCONCE_ADDRESS(SurfaceTexels) texels; // of all probes
+    SCONCE_ADDRESS(SurfaceFloats) first;  // of all probes: mean radiance straight from emitters and sky; harmonic mean of the rays' lengths, field units
+    SCONCE_ADDRESS(SurfaceFloats) light;  // of all probes: mean radiance that arrives, 0
+    SCONCE_ADDRESS(BakeWords) links;      // of this probe, [ray][texel]
+    SCONCE_ADDRESS(BakeWords) sentBefore; // of all probes: radiance that each texel sends, RGB9E5
+    SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter, the surface light
+    uint probe;
+    uint rays;       // a texel
+    uint shadowRays; // a texel, to emitters
+    float offset;    // field units that a ray starts off its surface
+};
+SCONCE_CHECK_SIZE(SurfacePush, 64);
+const uint kMostShadowRays = 32u;
 
 SCONCE_STRUCTS_END
 #endif

@@ -1,5 +1,6 @@
-// R11G11B10F words: radiance and irradiance of the probe maps. Shared text, see texel.h. GLSL has no pack function for this format, so it is
-// written here once: unsigned floats with 5 exponent bits and 6, 6, 5 bits of mantissa (Vulkan specification, B10G11R11_UFLOAT_PACK32).
+// Words of light. Shared text, see texel.h. GLSL has no pack functions for these formats, so they are written here once.
+// R11G11B10F, radiance and irradiance of the probe maps: unsigned floats with 5 exponent bits and 6, 6, 5 bits of mantissa (Vulkan
+// specification, B10G11R11_UFLOAT_PACK32). RGB9E5, surface light: three mantissas of 9 bits with one exponent (E5B9G9R9_UFLOAT_PACK32).
 #if defined(__cplusplus) || !defined(SCONCE_COLOR) // C++ includes it once for each precision
 #define SCONCE_COLOR
 
@@ -44,6 +45,27 @@ SCONCE_PURE real ditherOf(uint texel) { return real((texel * 2654435769u) >> 8) 
 SCONCE_PURE vec3 unpackRadiance(uint w)
 {
     return vec3(smallFloatValue(w & 0x7ffu, 6), smallFloatValue((w >> 11) & 0x7ffu, 6), smallFloatValue(w >> 22, 5));
+}
+
+/// To nearest, saturated at 65,408; the steps of all channels are those of the largest: 0.2 to 0.4 % of it.
+SCONCE_PURE uint packSharedExponent(vec3 c)
+{
+    real r = c.x > real(0.0) ? min(c.x, real(65408.0)) : real(0.0); // also turns NaN into 0
+    real g = c.y > real(0.0) ? min(c.y, real(65408.0)) : real(0.0);
+    real b = c.z > real(0.0) ? min(c.z, real(65408.0)) : real(0.0);
+    real largest = max(max(r, g), b);
+    // The exponent of the next power of two, of a number that is not denormal: its bits say it.
+    int exponent = max(int((floatBitsToUint(float(largest)) >> 23) & 255u) - 126, -15);
+    if (floor(largest * exp2(real(9 - exponent)) + real(0.5)) > real(511.0)) ++exponent;
+    real scale = exp2(real(9 - exponent));
+    return uint(floor(r * scale + real(0.5))) | (uint(floor(g * scale + real(0.5))) << 9) | (uint(floor(b * scale + real(0.5))) << 18) |
+           (uint(exponent + 15) << 27);
+}
+
+SCONCE_PURE vec3 unpackSharedExponent(uint w)
+{
+    real scale = uintBitsToFloat(((w >> 27) + (127u - 24u)) << 23); // 2^(exponent - 15 - 9)
+    return scale * vec3(real(w & 511u), real((w >> 9) & 511u), real((w >> 18) & 511u));
 }
 
 #endif

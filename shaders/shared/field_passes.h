@@ -8,10 +8,11 @@ const uint kFieldBlockBinding = 0u;
 const uint kFieldProbesBinding = 1u;
 const uint kFieldOctreeBinding = 2u;
 const uint kFieldPatchesBinding = 3u;
-const uint kFieldDistanceBinding = 4u; // these four: words of FieldData, where kByTexels
+const uint kFieldDistanceBinding = 4u; // these five: words of FieldData, where kByTexels
 const uint kFieldRadianceBinding = 5u;
 const uint kFieldIrradianceBinding = 6u;
 const uint kFieldPrefilteredBinding = 7u;
+const uint kFieldSurfaceBinding = 8u;
 const uint kFieldFlagsId = 0u;
 const uint kHoldsRadianceId = 1u;
 const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
@@ -25,13 +26,14 @@ const uint kByTexels = 4u; // words are texels of buffers; else they are read by
     DeviceAddress distanceAddress; \
     DeviceAddress radianceAddress; \
     DeviceAddress irradianceAddress; \
-    DeviceAddress prefilteredAddress;
+    DeviceAddress prefilteredAddress; \
+    DeviceAddress surfaceAddress;
 #ifdef __cplusplus
 struct FieldBlock
 {
     SCONCE_FIELD_BLOCK
 };
-SCONCE_CHECK_SIZE(FieldBlock, 256);
+SCONCE_CHECK_SIZE(FieldBlock, 264);
 #endif
 
 SCONCE_STRUCTS_END

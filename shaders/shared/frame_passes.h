@@ -17,6 +17,7 @@ const uint kTraceCountsBinding = 5u;
 const uint kFillLightBinding = 4u; // reconstruct.comp
 const uint kGatherDiffuseBinding = 4u; // gather_light.comp
 const uint kGatherRoughBinding = 5u;
+const uint kSurfaceDiffuseBinding = 4u; // surface_light.comp
 const uint kFilterFromBinding = 4u; // denoise.comp
 const uint kFilterToBinding = 5u;
 const uint kBlendLightBinding = 4u; // temporal.comp

@@ -57,7 +57,7 @@ struct LightFieldInfo
     uint gridY;
     uint gridZ;
     vec3 gridOrigin; // field space, probe (0,0,0)
-    float unused0;
+    uint surfaceSize; // texels a side of a face of the surface light; 0: there is none
     vec3 gridStep;   // field units
     float unused1;
     vec3 sky;        // radiance where nothing is hit, W/(m^2 sr)

@@ -8,18 +8,18 @@ SCONCE_STRUCTS_BEGIN
 const uint kLightDirectional = 0u; // as LightType
 const uint kLightPoint = 1u;
 const uint kLightSpot = 2u;
-const uint kLightEmitter = 3u; // a patch of an emissive surface, seen from both sides
+const uint kLightEmitter = 3u; // a patch of an emissive surface
 const uint kLightSky = 4u;     // a share of the sphere, as a directional light
 
 struct GpuLight
 {
     vec3 position;  // point, spot, emitter
     uint type;
-    vec3 direction; // the way the light travels; emitter: the patch's normal
+    vec3 direction; // the way the light travels; emitter: the patch's normal, outward
     float range;    // field units, 0: unlimited
     vec3 intensity; // directional, sky: irradiance on a facing surface; point, spot: W/sr over field units; emitter: radiance
     float area;     // emitter: of the patch, field units squared
-    float innerCone;
+    float innerCone;   // of an emitter: 1: its back is inside of what is closed; 0: it is seen from both sides
     float outerCone;
     int shadowLayer;   // first layer in the array of its kind: 1 (directional, sky) or 6 (the others)
     float shadowTexel; // directional, sky: field units a texel; the others: tangent a texel

@@ -1,4 +1,4 @@
-// Packed colours, against closed forms of their format (Vulkan specification, B10G11R11_UFLOAT_PACK32).
+// Packed colours, against closed forms of their formats (Vulkan specification, B10G11R11_UFLOAT_PACK32, E5B9G9R9_UFLOAT_PACK32).
 #include <cmath>
 #include <random>
 
@@ -82,6 +82,40 @@ TEST(Colour, DitherKeepsTheMean)
             sum += glm::dvec3(Text::unpackRadiance(Text::packRadianceDithered(vec3(value), Text::ditherOf(texel))));
         for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(sum[channel] / kTexels / value, 1.0, 1e-3) << value << ' ' << channel;
     }
+}
+
+/// Value of an RGB9E5 channel by the format's own words: mantissa x 2^(exponent - 15 - 9).
+double sharedValueOf(uint32_t word, int channel)
+{
+    return std::ldexp(double((word >> (9 * channel)) & 511u), int(word >> 27) - 24);
+}
+
+TEST(Colour, SharedExponentsComeBackWithinHalfAStepOfTheLargestChannel)
+{
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> exponent(-20.0f, 15.9f);
+    for (int i = 0; i < 20000; ++i)
+    {
+        const vec3 c(std::exp2(exponent(random)), std::exp2(exponent(random)), std::exp2(exponent(random)));
+        const uint32_t word = Text::packSharedExponent(c);
+        const vec3 back = Text::unpackSharedExponent(word);
+        // The largest channel has a mantissa of 256 to 511, or the least exponent.
+        const double largest = std::max({c.x, c.y, c.z}), half = 0.5 * std::max(std::exp2(std::floor(std::log2(largest)) - 8.0), std::exp2(-24.0));
+        for (int channel = 0; channel < 3; ++channel)
+        {
+            EXPECT_EQ(back[channel], float(sharedValueOf(word, channel)));
+            EXPECT_NEAR(back[channel], c[channel], 2.001 * half) << "where the largest rounds up to the next exponent, steps are twice as wide";
+        }
+    }
+}
+
+TEST(Colour, SharedExponentsSaturateAndTurnWhatIsNoneIntoBlack)
+{
+    EXPECT_EQ(Text::packSharedExponent(vec3(0.0f)), 0u);
+    EXPECT_EQ(Text::unpackSharedExponent(Text::packSharedExponent(vec3(65408.0f, 1e30f, INFINITY))), vec3(65408.0f));
+    EXPECT_EQ(Text::unpackSharedExponent(Text::packSharedExponent(vec3(-1.0f, NAN, 1.0f))), vec3(0.0f, 0.0f, 1.0f));
+    for (const float exact : {1.0f, 0.5f, 255.5f, 511.0f, 1024.0f, 3.0f / 65536.0f})
+        EXPECT_EQ(Text::unpackSharedExponent(Text::packSharedExponent(vec3(exact))), vec3(exact)) << exact;
 }
 
 } // namespace

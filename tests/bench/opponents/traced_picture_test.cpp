@@ -51,7 +51,7 @@ RenderedFrame shown(const Scene& scene, const ImageSet& paths)
     settings.height = kHeight;
     showPaths(settings, kPaths);
     auto light = makeLightField(device.gpu(), field);
-    auto uploaded = DeviceScene::create(device.gpu(), scene, field.info, sceneForFrames(settings.effects));
+    auto uploaded = DeviceScene::create(device.gpu(), scene, field.info, sceneForFrames(settings.effects, field.info));
     EXPECT_TRUE(light && uploaded);
     auto renderer = SceneRenderer::create(device.gpu(), *uploaded, *light, settings);
     EXPECT_TRUE(renderer) << renderer.error().message;

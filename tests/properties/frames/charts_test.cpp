@@ -23,6 +23,7 @@ protected:
         bake.resolution = resolution;
         bake.chart = chart;
         bake.bounces = 1;
+        bake.surfaceTexels = 0; // of cube faces alone
         BakeReport report;
         const auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
         if (!field) return field.error();

@@ -133,7 +133,7 @@ TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
     for (int bare = 0; bare < 2; ++bare)
     {
         gpu().releaseStaging(); // the scene's bytes are what the device has more than before
-        const auto device = DeviceScene::create(gpu(), scene, field->info, bare ? sceneForFrames(settings.effects) : DeviceSceneDesc{});
+        const auto device = DeviceScene::create(gpu(), scene, field->info, bare ? sceneForFrames(settings.effects, field->info) : DeviceSceneDesc{});
         ASSERT_TRUE(device) << device.error().message;
         if (bare)
         {
@@ -150,13 +150,13 @@ TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
                    sky = uint64_t(maps.skySamples) * maps.skyShadow * maps.skyShadow * 2;
     EXPECT_GT(bytes[0] - bytes[1], emitters + sky - 1024);
     settings.effects.diffuse = settings.effects.tracedDiffuse = true;
-    EXPECT_EQ(sceneForFrames(settings.effects).light.emitterSamples, 0u) << "rays see emitters";
+    EXPECT_EQ(sceneForFrames(settings.effects, field->info).light.emitterSamples, 0u) << "rays see emitters";
 }
 
 TEST_F(EffectsTest, ShadowRaysThroughTheFieldNeedNoMapsAndGiveTheSameLight)
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
-    const auto field = bakeField(scene, kProbes, 128, 0);
+    const auto field = bakeField(scene, kProbes, 128, 0, 0);
     ASSERT_TRUE(field) << field.error().message;
     const auto light = makeLightField(gpu(), *field);
     RenderSettings settings = settingsOf(64);
@@ -166,7 +166,7 @@ TEST_F(EffectsTest, ShadowRaysThroughTheFieldNeedNoMapsAndGiveTheSameLight)
     for (const bool traced : {false, true})
     {
         settings.effects.fieldShadows = traced;
-        const auto device = DeviceScene::create(gpu(), scene, field->info, sceneForFrames(settings.effects));
+        const auto device = DeviceScene::create(gpu(), scene, field->info, sceneForFrames(settings.effects, field->info));
         ASSERT_TRUE(device) << device.error().message;
         bytes[traced] = device->deviceBytes();
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);

@@ -18,9 +18,11 @@ protected:
         return settings;
     }
 
-    Result<FieldData> bakeField(const Scene& scene, std::span<const vec3> probes, uint32_t resolution = 128, uint32_t bounces = 2)
+    Result<FieldData> bakeField(const Scene& scene, std::span<const vec3> probes, uint32_t resolution = 128, uint32_t bounces = 2,
+                                uint32_t surfaceTexels = knobs::surfaceTexels.value)
     {
         BakeSettings bake;
+        bake.surfaceTexels = surfaceTexels;
         bake.resolution = resolution;
         bake.bounces = bounces;
         BakeReport report;

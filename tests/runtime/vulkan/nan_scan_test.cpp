@@ -132,6 +132,7 @@ TEST_F(NanScanTest, ABakeAndItsFramesAreCleanAndANaNInTheFieldIsNamedWhereItCome
         if (chart == gpu::kChartOctahedral) continue;
         RenderSettings settings = settingsOf(48);
         settings.effects.temporal = true;
+        settings.effects.surfaceLight = false; // what is planted is in the irradiance
         const auto clean = drawWith(*field, scene, settings);
         EXPECT_TRUE(clean) << clean.error().message;
         for (size_t i = 0; i < field->irradiance.size(); i += 2) field->irradiance[i] = 0xffffffffu;
@@ -162,6 +163,12 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"probe irradiance", "as distances"},
         {"prefiltered radiance", "as distances, made on the host"},
         {"probe patches", "as distances, made on the host"},
+        {"surface light", "as distances"},
+        {"A probe's surface texels", "words whose packing knows no NaN"},
+        {"surface texels", "as those of a probe"},
+        {"links of a probe's surfaces", "integers"},
+        {"light that surfaces send", "as surface texels; the light that they are made of is scanned"},
+        {"light that surfaces sent", "as light that surfaces send"},
         {"probe headers", "as distances"},
         {"rays", "from the host: the tracer answers any number"},
         {"tile lists", "integers"},

@@ -1,0 +1,151 @@
+#include "runtime/bake/surface_baker.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "base/numbers.h"
+#include "runtime/vulkan/nan_scan.h"
+#include "shaders/shared/pure.h"
+
+#include "spirv/surface_bounce_comp.h"
+#include "spirv/surface_filter_comp.h"
+#include "spirv/surface_gather_comp.h"
+
+namespace sconce
+{
+
+Result<SurfaceBaker> SurfaceBaker::create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
+                                          std::span<const gpu::SurfaceTexel> texels, const Desc& desc)
+{
+    assert(desc.shadowRays <= gpu::kMostShadowRays && field.info().surfaceSize > 0);
+    SurfaceBaker baker(gpu, scene, field, desc);
+    if (auto status = baker.make(texels); !status) return status.error();
+    return baker;
+}
+
+Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
+{
+    assert(texels.size() == texelsOfProbe() * field.info().probeCount);
+    links.resize(texels.size() * desc.rays);
+    auto known = gpu->makeBufferWith(texels, 0, "surface texels");
+    if (!known) return known.error();
+    texelBuffer = std::move(*known);
+    struct Need
+    {
+        Buffer& buffer;
+        uint64_t bytes;
+        const char* what;
+    };
+    for (const Need& need : {Need{first, texels.size() * 16, "first light at surfaces"}, Need{light, texels.size() * 16, "light at surfaces"},
+                             Need{sent, texels.size() * 4, "light that surfaces send"},
+                             Need{sentBefore, texels.size() * 4, "light that surfaces sent"},
+                             Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
+    {
+        auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
+        if (!buffer) return buffer.error();
+        need.buffer = std::move(*buffer);
+    }
+    const VkDescriptorSetLayout sets[] = {field.layout(), scene->layout()};
+    const auto constants = shaderConstants(field);
+    for (const auto& [pipeline, code, setCount] : {std::tuple<Pipeline*, Spirv, size_t>{&gatherPass, surface_gather_comp, 2},
+                                                   {&bouncePass, surface_bounce_comp, 1},
+                                                   {&filterPass, surface_filter_comp, 1}})
+    {
+        auto made = Pipeline::compute(*gpu, code, std::span(sets).first(setCount), sizeof(gpu::SurfacePush), constants);
+        if (!made) return made.error();
+        *pipeline = std::move(*made);
+    }
+    std::vector<uint32_t> direct(texels.size());
+    std::ranges::transform(texels, direct.begin(), &gpu::SurfaceTexel::sent);
+    // Sky is never written to: it stays 0.
+    auto cleared = gpu->submit(
+        [&](VkCommandBuffer cmd)
+        {
+            for (const Buffer* buffer : {&first, &light, &sentBefore})
+                gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+        });
+    if (!cleared) return cleared;
+    return gpu->upload(sent, 0, std::as_bytes(std::span(direct)));
+}
+
+gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
+{
+    gpu::SurfacePush push{};
+    push.texels = texelBuffer.address();
+    push.first = first.address();
+    push.light = light.address();
+    push.links = linkBuffer.address();
+    push.sentBefore = sentBefore.address();
+    push.sent = sent.address();
+    push.probe = probe;
+    push.rays = rays;
+    push.shadowRays = desc.shadowRays;
+    push.offset = desc.offset;
+    return push;
+}
+
+Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, uint32_t probe, uint32_t rays, const char* name,
+                              const Buffer& written)
+{
+    return gpu->submit(
+        [&](VkCommandBuffer cmd)
+        {
+            const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
+            pipeline.bind(cmd, std::span(sets).first(withScene ? 2 : 1));
+            pipeline.push(cmd, pushFor(probe, rays));
+            const uint32_t groups = (field.info().surfaceSize + 7) / 8;
+            gpu->vk.CmdDispatch(cmd, groups, groups, 6);
+            if (&written != &sent) scanBuffer(*gpu, cmd, name, written, {}); // those are words, not floats
+            // For the copies out, which are of the next submit.
+            memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
+        });
+}
+
+Status SurfaceBaker::gather(uint32_t probe)
+{
+    if (auto status = dispatch(gatherPass, true, probe, desc.rays, "surface gather", first); !status) return status;
+    const size_t count = texelsOfProbe() * desc.rays;
+    return gpu->download(linkBuffer, 0, std::as_writable_bytes(std::span(links).subspan(probe * count, count)));
+}
+
+Status SurfaceBaker::bounce()
+{
+    std::swap(sent, sentBefore);
+    const size_t count = texelsOfProbe() * desc.rays;
+    for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
+    {
+        if (lit)
+            if (auto status = gpu->upload(linkBuffer, 0, std::as_bytes(std::span(links).subspan(probe * count, count))); !status)
+                return status;
+        if (auto status = dispatch(bouncePass, false, probe, lit ? desc.rays : 0, "surface bounce", light); !status) return status;
+    }
+    lit = true;
+    return success();
+}
+
+Result<double> SurfaceBaker::meanSent()
+{
+    const uint32_t side = field.info().surfaceSize;
+    std::vector<uint32_t> words(texelsOfProbe() * field.info().probeCount);
+    if (auto status = gpu->download(sent, 0, std::as_writable_bytes(std::span(words))); !status) return status.error();
+    double sum = 0.0, all = 0.0;
+    for (size_t i = 0; i < words.size(); ++i)
+    {
+        const glm::dvec2 uv = (glm::dvec2(i % side, i / side % side) + 0.5) * (2.0 / side) - 1.0;
+        const double stretch = 1.0 + glm::dot(uv, uv), solidAngle = 1.0 / (stretch * std::sqrt(stretch));
+        sum += solidAngle * glm::dot(Pure<float>::unpackSharedExponent(words[i]), kLuminance);
+        all += solidAngle;
+    }
+    return sum / all;
+}
+
+Status SurfaceBaker::finish(std::span<uint32_t> words)
+{
+    for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
+        if (auto status = dispatch(filterPass, false, probe, 0, "surface filter", sent); !status) return status;
+    return gpu->download(sent, 0, std::as_writable_bytes(words));
+}
+
+} // namespace sconce

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/field/light_field.h"
+#include "runtime/scene/device_scene.h"
+#include "shaders/shared/bake_passes.h"
+
+namespace sconce
+{
+
+/// Gathers light at the surface points of all probes' texels (shaders/shared/surface_light.h), straight from emitters and sky and bounce by bounce:
+/// rays are traced through the field once, and each bounce reads what was found where they ended. Each call submits and waits.
+class SurfaceBaker
+{
+public:
+    struct Desc
+    {
+        uint32_t rays = 0;       // a texel, to gather light
+        uint32_t shadowRays = 0; // a texel, to emitters; at most gpu::kMostShadowRays
+        float offset = 0.0f;     // field units that rays start off their surface
+    };
+    /// @param field   with distances, octree and surfaceSize; it is only read
+    /// @param texels  of all probes, [probe][6 surfaceSize^2]
+    static Result<SurfaceBaker> create(Gpu& gpu, const DeviceScene& scene, const LightField& field, std::span<const gpu::SurfaceTexel> texels,
+                                       const Desc& desc);
+
+    /// A probe's texels: their light straight from emitters and sky, and where their rays end. All probes before the first bounce.
+    Status gather(uint32_t probe);
+    /// One bounce at all texels; the first call makes the light without one.
+    Status bounce();
+    /// Mean over probes and directions of the radiance, luminance (Rec. 709), that the texels send after the last bounce; before the first, of
+    /// direct light alone.
+    Result<double> meanSent();
+    /// The light as a field holds it, filtered: [probe][6 surfaceSize^2], RGB9E5.
+    Status finish(std::span<uint32_t> light);
+    uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
+
+private:
+    SurfaceBaker(Gpu& device, const DeviceScene& deviceScene, const LightField& asked, const Desc& wanted)
+        : gpu(&device), scene(&deviceScene), field(asked), desc(wanted)
+    {
+    }
+    Status make(std::span<const gpu::SurfaceTexel> texels);
+    Status dispatch(const Pipeline& pipeline, bool withScene, uint32_t probe, uint32_t rays, const char* name, const Buffer& written);
+    gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
+    size_t texelsOfProbe() const { return size_t(6) * field.info().surfaceSize * field.info().surfaceSize; }
+
+    Gpu* gpu;
+    const DeviceScene* scene;
+    LightField field;
+    Desc desc;
+    Pipeline gatherPass, bouncePass, filterPass;
+    Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore; // of all probes but the links, which are of one
+    std::vector<uint32_t> links;                                   // [probe][ray][texel]
+    bool lit = false;                                              // the light without a bounce is made
+};
+
+} // namespace sconce

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace sconce
+{
+
+/// For every vertex the first vertex with the same position, bit by bit but -0 and 0 alike: meshes repeat positions for their normals.
+std::vector<uint32_t> weld(const std::vector<vec3>& positions);
+
+/// Which side of a triangle can be seen from outside.
+enum class Outside : int8_t
+{
+    both = 0,   // of a sheet, or of a part that is not closed
+    front = 1,  // the side from which its corners run counter-clockwise
+    back = -1,
+};
+
+/// For every triangle: `front` or `back` where it belongs to a closed part, triangles joined by corners each of whose edges is run along as often
+/// one way as the other, else `both`. Cost: a sort of all edges.
+std::vector<Outside> outsideOfParts(const Scene& scene);
+
+} // namespace sconce

@@ -1,0 +1,217 @@
+// Surface light: the light that arrives at the surface points that a probe sees, one value a texel: a lightmap without a parametrisation of the
+// scene. A point that a probe sees reads its own light there, where probes in the open know only the light of the open. Shared text, see
+// probe_trace.h; needs surfaceWord(uint), planeSeen() and rankedProbesAt() besides.
+//
+// A surface map has `surfaceSize` texels a side of each cube face, fewer than the distance map. Its texel stands for one point, that of the
+// distance texel that holds its centre: one that the probe sees. (Where the centre's own direction meets that texel's plane may lie beyond an edge,
+// and so behind a thin wall.) The value is the mean of the radiance that arrives there, weighted
+// by the cosine (irradiance / pi), of emitters, sky and all that surfaces scatter; what a host's point, spot and directional lights give
+// directly is left out, since it is the host's to draw. RGB9E5.
+
+// A texel lights a point that lies on its surface: within the chord of a curve as bent as the two normals are apart, and some slack.
+SCONCE_CONST real kSurfaceSlack = real(0.05);  // of the distance to the texel's point, and of its width
+SCONCE_CONST real kSurfaceBend = real(0.7071); // cosine of the angle between normals up to which a surface goes on
+SCONCE_CONST real kSurfaceGrazing = real(0.05); // cosine at the point below which a probe sees too little of its surface
+SCONCE_CONST real kSurfaceLeast = real(0.05);  // share of the four taps that must lie on the surface
+SCONCE_CONST int kSurfaceProbes = 2;           // that light a point
+SCONCE_CONST int kNearestReach = 2;            // texels to either side that the nearest one is searched in
+SCONCE_CONST real kNearestBend = real(0.5);
+SCONCE_CONST real kNearestWidths = real(3.0);
+SCONCE_CONST uint kNoTexel = 0xffffffffu;
+
+struct SurfacePoint
+{
+    vec3 at;     // relative to the probe's centre, field units
+    vec3 normal; // unit, of the geometry, on the probe's side
+    real width;  // of the texel across its axis there, field units; 0: sky
+};
+
+SCONCE_FN uint surfaceIndex(uint probe, int face, int x, int y)
+{
+    return ((probe * 6u + uint(face)) * field.surfaceSize + uint(y)) * field.surfaceSize + uint(x);
+}
+
+SCONCE_FN SurfacePoint surfacePointAt(uint probe, int face, int x, int y)
+{
+    SurfacePoint p;
+    real finer = real(field.faceSize) / real(field.surfaceSize);
+    real fx = floor((real(x) + real(0.5)) * finer);
+    real fy = floor((real(y) + real(0.5)) * finer);
+    uint word = distanceWord(mapWords(probe, face) + uint(fy) * field.faceSize + uint(fx));
+    real toUnit = real(2.0) / real(field.faceSize);
+    real q = halfToReal(word);
+    p.width = real(0.0);
+    p.at = vec3(real(0.0));
+    p.normal = vec3(real(0.0));
+    if (!(q > real(0.0))) return p;
+    p.at = faceDirection(face, vec3((fx + real(0.5)) * toUnit - real(1.0), (fy + real(0.5)) * toUnit - real(1.0), real(1.0))) / q;
+    p.normal = texelNormal(face, vec2(fx, fy), word);
+    p.width = real(2.0) / (real(field.surfaceSize) * q);
+    return p;
+}
+
+/// Whether a surface goes on from a point (relative to the probe, its normal unit) to a texel's.
+/// @param bend  least cosine between the normals
+SCONCE_FN bool isSameSurface(vec3 point, vec3 normal, SCONCE_IN(SurfacePoint) texel, real bend)
+{
+    real turned = dot(normal, texel.normal);
+    if (!(texel.width > real(0.0)) || turned < bend) return false;
+    vec3 to = texel.at - point;
+    real off = max(abs(dot(normal, to)), abs(dot(texel.normal, to)));
+    real chord = sqrt(max(real(0.5) - real(0.5) * turned, real(0.0))) + kSurfaceSlack;
+    return off <= length(to) * chord + kSurfaceSlack * texel.width;
+}
+
+/// Proof that a probe sees a surface point: a point lifted off it by a texel's width is in front of what the probe sees there. Without it the
+/// foot of a thin wall would take the light of the floor on the other side, which lies in one plane with it. Cost: 1 read.
+SCONCE_FN bool isSeenBy(uint probe, vec3 point, vec3 normal)
+{
+    real width = length(point) * real(2.0) / real(field.faceSize);
+    vec3 lifted = point + width * normal;
+    vec3 plane = planeSeen(probe, lifted);
+    real behind = dot(plane, lifted);
+    if (behind <= real(1.0) + real(0.5) / real(field.faceSize)) return true; // by at most a quarter of the width
+    SurfacePoint seen;
+    seen.at = lifted / behind;
+    seen.normal = -normalize(plane);
+    seen.width = width;
+    return isSameSurface(point, normal, seen, kSurfaceBend);
+}
+
+/// What a probe has to say about a point: cosine there over the squared distance, so about its texels a unit of the surface; 0 where it sees too
+/// little.
+SCONCE_FN real surfaceDensity(uint probe, vec3 point, vec3 normal)
+{
+    vec3 to = vec3(probeHeader(probe).centre) - point;
+    real d2 = max(dot(to, to), real(1e-12));
+    real cosine = dot(to, normal) * inversesqrt(d2);
+    return cosine > kSurfaceGrazing ? cosine / d2 : real(0.0);
+}
+
+/// Sum of the four taps about a point that lie on its surface, and of their weights, bilinear. Cost: 8 reads.
+/// @param point  relative to the probe's centre
+SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
+{
+    int face = dominantFace(point);
+    vec3 uvw = faceCoordinates(face, point);
+    vec4 sum = vec4(real(0.0));
+    if (!(uvw.z > real(1e-6))) return sum;
+    real middle = real(0.5) * real(field.surfaceSize);
+    int last = int(field.surfaceSize) - 1;
+    real px = middle * (uvw.x / uvw.z + real(1.0)) - real(0.5);
+    real py = middle * (uvw.y / uvw.z + real(1.0)) - real(0.5);
+    int x0 = clamp(int(floor(px)), 0, last - 1);
+    int y0 = clamp(int(floor(py)), 0, last - 1);
+    real fx = clamp(px - real(x0), real(0.0), real(1.0));
+    real fy = clamp(py - real(y0), real(0.0), real(1.0));
+    for (int tap = 0; tap < 4; ++tap)
+    {
+        int x = x0 + (tap & 1);
+        int y = y0 + (tap >> 1);
+        real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
+        if (!isSameSurface(point, normal, surfacePointAt(probe, face, x, y), kSurfaceBend)) continue;
+        sum += weight * vec4(unpackSharedExponent(surfaceWord(surfaceIndex(probe, face, x, y))), real(1.0));
+    }
+    return sum;
+}
+
+/// The nearest texel of some about a point that may be of its surface: for edges and what is thinner than a texel. Its bounds keep another room's
+/// light out, which the nearest texel of all may be. Cost: 25 reads.
+/// @return  its index; kNoTexel where there is none
+SCONCE_FN uint nearestSurfaceTexel(uint probe, vec3 point, vec3 normal)
+{
+    int face = dominantFace(point);
+    vec3 uvw = faceCoordinates(face, point);
+    uint found = kNoTexel;
+    if (!(uvw.z > real(1e-6))) return found;
+    real middle = real(0.5) * real(field.surfaceSize);
+    int last = int(field.surfaceSize) - 1;
+    int px = int(floor(middle * (uvw.x / uvw.z + real(1.0))));
+    int py = int(floor(middle * (uvw.y / uvw.z + real(1.0))));
+    real best = real(1e30);
+    int side = 2 * kNearestReach + 1;
+    for (int tap = 0; tap < side * side; ++tap)
+    {
+        int x = px + tap % side - kNearestReach;
+        int y = py + tap / side - kNearestReach;
+        if (x < 0 || y < 0 || x > last || y > last) continue;
+        SurfacePoint texel = surfacePointAt(probe, face, x, y);
+        vec3 to = texel.at - point;
+        real d2 = dot(to, to);
+        if (!(texel.width > real(0.0)) || d2 > min(best, kNearestWidths * kNearestWidths * texel.width * texel.width)) continue;
+        if (dot(normal, texel.normal) < kNearestBend || abs(dot(normal, to)) > texel.width) continue;
+        best = d2;
+        found = surfaceIndex(probe, face, x, y);
+    }
+    return found;
+}
+
+struct SurfaceLight
+{
+    vec3 light; // mean of the arriving radiance, weighted by the cosine
+    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: none, the light is of the probes' irradiance
+};
+
+/// The first component that is largest; -1 when none is above 0.
+SCONCE_FN int largestOf(vec4 v)
+{
+    real most = max(max(v.x, v.y), max(v.z, v.w));
+    if (!(most > real(0.0))) return -1;
+    return v.x == most ? 0 : (v.y == most ? 1 : (v.z == most ? 2 : 3));
+}
+
+/// Light at a surface point from what its probes see of it: of a leaf's probes the two that see most of it, and of their texels those of the same
+/// surface. Cost: about 25 reads; up to 50 more where no texel shows the point.
+/// @param point   field space; `normal`: unit, on the side that is looked at
+/// @param lookUp  point whose leaf is asked
+SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    SurfaceLight result;
+    result.light = vec3(real(0.0));
+    result.probes = 0;
+    if (!canGather(point, normal)) return result;
+    uvec4 ranked = rankedProbesAt(lookUp, reads);
+    vec4 density = vec4(surfaceDensity(ranked.x, point, normal), surfaceDensity(ranked.y, point, normal),
+                        surfaceDensity(ranked.z, point, normal), surfaceDensity(ranked.w, point, normal));
+    // A list of fewer repeats some.
+    if (ranked.y == ranked.x) density.y = real(0.0);
+    if (ranked.z == ranked.x || ranked.z == ranked.y) density.z = real(0.0);
+    if (ranked.w == ranked.x || ranked.w == ranked.y || ranked.w == ranked.z) density.w = real(0.0);
+    vec4 sum = vec4(real(0.0));
+    uvec2 seeing = uvec2(kNoProbe); // that see the point without a texel of its surface
+    for (int k = 0; k < kRanked && result.probes < kSurfaceProbes; ++k)
+    {
+        int which = largestOf(density);
+        if (which < 0) break;
+        real most = density[which];
+        uint probe = ranked[which];
+        density[which] = real(0.0);
+        vec3 fromProbe = point - vec3(probeHeader(probe).centre);
+        if (!isSeenBy(probe, fromProbe, normal)) continue;
+        vec4 taps = surfaceTaps(probe, fromProbe, normal);
+        if (taps.w > kSurfaceLeast)
+        {
+            sum += most * taps;
+            ++result.probes;
+        }
+        else if (seeing.x == kNoProbe) seeing.x = probe;
+        else if (seeing.y == kNoProbe) seeing.y = probe;
+    }
+    if (result.probes > 0)
+    {
+        result.light = vec3(sum.x, sum.y, sum.z) / sum.w;
+        return result;
+    }
+    uint nearest = kNoTexel;
+    if (seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seeing.x, point - vec3(probeHeader(seeing.x).centre), normal);
+    if (nearest == kNoTexel && seeing.y != kNoProbe)
+        nearest = nearestSurfaceTexel(seeing.y, point - vec3(probeHeader(seeing.y).centre), normal);
+    if (nearest != kNoTexel)
+    {
+        result.light = unpackSharedExponent(surfaceWord(nearest));
+        return result;
+    }
+    result.probes = -1;
+    result.light = irradianceAt(point, normal, lookUp, reads);
+    return result;
+}

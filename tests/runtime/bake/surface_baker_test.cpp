@@ -1,0 +1,177 @@
+// Light gathered at surfaces, against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "runtime/bake/bake.h"
+#include "runtime/field/tracer_cpu.h"
+#include "scene/mesh_builder.h"
+#include "tests/support/device.h"
+#include "tests/support/test_scenes.h"
+
+namespace sconce
+{
+namespace
+{
+
+using Text = twin::LightFieldTwin<float>;
+
+class SurfaceBake : public testing::Test
+{
+protected:
+    FieldData bake(const Scene& scene, std::vector<vec3> probes, uint32_t bounces, uint32_t surfaceTexels = 26)
+    {
+        BakeSettings settings;
+        settings.resolution = 128;
+        settings.bounces = bounces;
+        settings.surfaceTexels = surfaceTexels;
+        settings.octree.voxels = 16;
+        auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        if (!field) throw std::runtime_error(field.error().message);
+        return std::move(*field);
+    }
+    /// Mean and the largest relative difference from it of all texels that see a surface, green.
+    struct Spread
+    {
+        double mean = 0.0, worst = 0.0;
+    };
+    static Spread spreadOf(const FieldData& field)
+    {
+        Text text(field, {});
+        std::vector<double> values;
+        for (const uint32_t word : field.surfaceLight) values.push_back(text.unpackSharedExponent(word).g);
+        Spread spread;
+        for (const double v : values) spread.mean += v / double(values.size());
+        for (const double v : values) spread.worst = std::max(spread.worst, std::abs(v / spread.mean - 1.0));
+        return spread;
+    }
+    testing_support::ValidatedDevice device;
+    BakeReport report;
+};
+
+Light pointLight(float intensity)
+{
+    Light light;
+    light.type = LightType::point;
+    light.intensity = vec3(intensity);
+    return light;
+}
+
+// An integrating sphere about a point light: all of it sends albedo I / (pi r^2) after one scattering, and each bounce the albedo's share of the one
+// before. What arrives straight from the light is the host's and is no part of it.
+TEST_F(SurfaceBake, EachBounceInASphereIsTheAlbedosShareOfTheOneBefore)
+{
+    constexpr float kAlbedo = 0.6f, kRadius = 2.0f, kIntensity = 8.0f;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.sphere(vec3(0.0f), kRadius, 64, 32, mesh.material("white", vec3(test::RoughModel::baseColorOf(kAlbedo))));
+    scene.lights.push_back(pointLight(kIntensity));
+    const double first = kAlbedo * kIntensity / (std::numbers::pi * kRadius * kRadius);
+    for (const uint32_t bounces : {0u, 1u, 2u, 4u, 8u})
+    {
+        const double sum = first * (1.0 - std::pow(kAlbedo, double(bounces + 1))) / (1.0 - kAlbedo);
+        const Spread found = spreadOf(bake(scene, {vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)}, bounces));
+        EXPECT_NEAR(found.mean, sum, 0.01 * sum) << bounces << " bounces";
+        EXPECT_LT(found.worst, 0.06) << bounces << " bounces";
+    }
+}
+
+// Under a sky of radiance 1 a plate gathers 1 at every point of its upper side.
+TEST_F(SurfaceBake, APlateUnderTheSkyGathersTheSky)
+{
+    Scene scene;
+    scene.sky = vec3(1.0f);
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-2.0f, -0.2f, -2.0f), vec3(2.0f, 0.0f, 2.0f), mesh.material("grey", vec3(0.5f)));
+    const FieldData field = bake(scene, {vec3(0.0f, 1.0f, 0.0f)}, 2);
+    Text text(field, {});
+    int found = 0;
+    for (int i = 0; i < int(field.surfaceLight.size()); ++i)
+    {
+        const int side = int(field.info.surfaceSize), face = i / (side * side);
+        const auto point = text.surfacePointAt(0, face, i % side, i / side % side);
+        if (point.width > 0.0f)
+        {
+            ++found;
+            EXPECT_NEAR(text.unpackSharedExponent(field.surfaceLight[size_t(i)]).g, 1.0f, 0.002f);
+        }
+        else
+            EXPECT_EQ(field.surfaceLight[size_t(i)], 0u) << "sky has no surface";
+    }
+    EXPECT_GT(found, 100);
+}
+
+// A square emitter over a plane: below its middle the cosine-weighted mean of its radiance is its form factor (Howell, "A Catalog of Radiation Heat
+// Transfer Configuration Factors", B-4: a point parallel to a rectangle's corner, four times).
+TEST_F(SurfaceBake, BelowALampIsTheLampsFormFactor)
+{
+    constexpr double kHalf = 0.5, kAbove = 1.5;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-3.0f, -0.2f, -3.0f), vec3(3.0f, 0.0f, 3.0f), mesh.material("black", vec3(0.0f), 1.0f));
+    mesh.quad({-0.5f, 1.5f, -0.5f}, {0.5f, 1.5f, -0.5f}, {0.5f, 1.5f, 0.5f}, {-0.5f, 1.5f, 0.5f}, mesh.emitter("lamp", vec3(2.0f)));
+    const FieldData field = bake(scene, {vec3(0.2f, 1.0f, 0.1f), vec3(-0.3f, 0.8f, -0.2f)}, 0, 52);
+    const double x = kHalf / kAbove, root = std::sqrt(1.0 + x * x);
+    const double corner = (x / root * std::atan(x / root) * 2.0) / (2.0 * std::numbers::pi);
+    Text text(field, {});
+    const vec3 p = (vec3(0.0f) - field.info.origin) / field.info.scale;
+    int reads = 0;
+    const auto found = text.surfaceLightAt(p, vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads);
+    EXPECT_EQ(found.probes, 2);
+    EXPECT_NEAR(found.light.g, 2.0 * 4.0 * corner, 0.02 * 8.0 * corner);
+}
+
+// A globe sends light by its outside alone: shadows that let its far side through made it twice as bright.
+TEST_F(SurfaceBake, AGlobeOfACentimetreIsNoBrighterThanItsOutside)
+{
+    constexpr double kRadius = 0.01;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-3.0f, -0.2f, -3.0f), vec3(3.0f, 0.0f, 3.0f), mesh.material("black", vec3(0.0f), 1.0f));
+    mesh.sphere(vec3(0.0f, 1.0f, 0.0f), float(kRadius), 32, 16, mesh.emitter("globe", vec3(1000.0f)));
+    const FieldData field = bake(scene, {vec3(1.0f, 1.2f, 0.3f), vec3(-0.8f, 0.9f, -0.5f)}, 0, 52);
+    Text text(field, {});
+    const vec3 p = (vec3(0.0f) - field.info.origin) / field.info.scale;
+    int reads = 0;
+    const double arriving = text.surfaceLightAt(p, vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads).light.g;
+    EXPECT_NEAR(arriving, 1000.0 * kRadius * kRadius, 0.03 * 1000.0 * kRadius * kRadius); // a disc of its radius, 1 m off
+}
+
+TEST_F(SurfaceBake, TheSameBakeGivesTheSameBytes)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("white", vec3(0.5f)));
+    mesh.quad({-0.3f, 0.9f, -0.3f}, {0.3f, 0.9f, -0.3f}, {0.3f, 0.9f, 0.3f}, {-0.3f, 0.9f, 0.3f}, mesh.emitter("lamp", vec3(5.0f)));
+    const std::vector<vec3> probes = {vec3(0.2f, 0.1f, 0.1f), vec3(-0.4f, -0.3f, 0.2f)};
+    const FieldData a = bake(scene, probes, 2), b = bake(scene, probes, 2);
+    EXPECT_FALSE(a.surfaceLight.empty());
+    EXPECT_TRUE(a.surfaceLight == b.surfaceLight && a.radiance == b.radiance && a.irradiance == b.irradiance);
+}
+
+TEST_F(SurfaceBake, WhatABakeMayNotTakeIsRefusedByItsSentence)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("white", vec3(0.5f)));
+    BakeSettings settings;
+    settings.surfaceTexels = 50;
+    auto odd = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    ASSERT_FALSE(odd);
+    EXPECT_NE(odd.error().message.find("surfaceTexels is 50"), std::string::npos) << odd.error().message;
+    settings.surfaceTexels = 52;
+    settings.surfaceRays = 0;
+    auto none = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("surfaceRays is 0"), std::string::npos) << none.error().message;
+    settings.surfaceRays = 64;
+    settings.hostMemory = 6u << 20;
+    auto little = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    ASSERT_FALSE(little);
+    EXPECT_EQ(little.error().code, ErrorCode::outOfMemory) << "the links alone take 4 MiB";
+}
+
+} // namespace
+} // namespace sconce

@@ -1,0 +1,143 @@
+// Surface light of the shared text, on fields whose light is known at every point.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "runtime/field/tracer_cpu.h"
+#include "scene/mesh_builder.h"
+#include "tests/support/field_by_rays.h"
+
+namespace sconce
+{
+namespace
+{
+
+using Text = twin::LightFieldTwin<float>;
+constexpr uint32_t kSize = 24; // texels of surface light a side
+
+/// A field by rays with the light that `lightAt` says at every texel's point, world metres.
+template <class Light> FieldData litField(const Scene& scene, const std::vector<vec3>& probes, Light lightAt)
+{
+    const RayScene rays = std::move(*RayScene::create(scene));
+    FieldData field = testing_support::fieldByRays(rays, probes, 96);
+    field.info.surfaceSize = kSize;
+    field.surfaceLight.resize(size_t(6) * kSize * kSize * probes.size());
+    field.irradiance.assign(probes.size() * kIrradianceWordsPerProbe, 0u);
+    Text text(field, testing_support::defaultQuality());
+    for (uint32_t probe = 0; probe < probes.size(); ++probe)
+        for (int face = 0; face < 6; ++face)
+            for (int y = 0; y < int(kSize); ++y)
+                for (int x = 0; x < int(kSize); ++x)
+                {
+                    const auto point = text.surfacePointAt(probe, face, x, y);
+                    const vec3 world = field.info.origin + field.info.scale * (vec3(field.probes[probe].centre) + point.at);
+                    field.surfaceLight[text.surfaceIndex(probe, face, x, y)] = text.packSharedExponent(vec3(lightAt(world)));
+                }
+    return field;
+}
+
+auto lightOf(const FieldData& field, vec3 point, vec3 normal)
+{
+    Text text(field, testing_support::defaultQuality());
+    const vec3 p = (point - field.info.origin) / field.info.scale;
+    int reads = 0;
+    return text.surfaceLightAt(p, normal, p + 0.5f * field.info.voxel * normal, reads);
+}
+
+TEST(SurfaceLight, TexelsLieOnTheWallsThatTheirProbesSee)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
+    const FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}}, [](vec3) { return 1.0f; });
+    Text text(field, testing_support::defaultQuality());
+    for (int face = 0; face < 6; ++face)
+        for (int i = 0; i < int(kSize * kSize); ++i)
+        {
+            const auto point = text.surfacePointAt(0, face, i % int(kSize), i / int(kSize));
+            const vec3 at = field.info.origin + field.info.scale * (vec3(field.probes[0].centre) + point.at);
+            EXPECT_NEAR(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}), 1.0f, 0.003f);
+            EXPECT_GT(point.width, 0.0f);
+        }
+}
+
+// Light that changes linearly over a box's walls: bilinear taps give it exactly, but for the words' steps and the half texels at a face's border.
+TEST(SurfaceLight, ComesBackWhereItIsFromTwoProbes)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
+    const auto light = [](vec3 p) { return 2.0f + p.x + 0.5f * p.y; };
+    const FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}, {-0.4f, -0.3f, 0.2f}, {0.1f, -0.5f, -0.5f}}, light);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> across(-0.95f, 0.95f);
+    double worst = 0.0;
+    int one = 0;
+    constexpr int kPoints = 6000;
+    for (int i = 0; i < kPoints; ++i)
+    {
+        vec3 p(across(random), across(random), across(random)), n(0.0f);
+        p[i % 3] = (i / 3) % 2 ? 1.0f : -1.0f;
+        n[i % 3] = -p[i % 3];
+        const auto found = lightOf(field, p, n);
+        ASSERT_GE(found.probes, 1);
+        one += found.probes == 1;
+        worst = std::max(worst, double(std::abs(found.light.g / light(p) - 1.0f)));
+    }
+    RecordProperty("worst", std::to_string(worst));
+    EXPECT_LT(worst, 0.08) << "at a border of two faces, half a texel of 24 away";
+    EXPECT_EQ(one, 0) << "in a box every probe sees every point";
+}
+
+// Floor and walls run on in one plane behind a thin wall. What a pixel at its foot projects onto is coplanar with it, near, and of the other room.
+TEST(SurfaceLight, DoesNotComeThroughAWallOf1CentimetreAlongTheFloor)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.5f));
+    mesh.box(vec3(-2.0f, 0.0f, -1.0f), vec3(2.0f, 2.0f, 1.0f), white);
+    mesh.box(vec3(-0.005f, 0.0f, -1.0f), vec3(0.005f, 2.0f, 1.0f), white);
+    const FieldData field =
+        litField(scene, {{-1.0f, 1.1f, 0.1f}, {-0.6f, 0.6f, -0.3f}, {1.0f, 0.9f, -0.1f}, {0.5f, 1.2f, 0.3f}}, [](vec3 p) { return p.x < 0.0f ? 100.0f : 1.0f; });
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> along(-0.9f, 0.9f), away(0.006f, 0.1f);
+    for (int i = 0; i < 4000; ++i)
+    {
+        const float x = away(random), z = along(random);
+        EXPECT_NEAR(lightOf(field, vec3(x, 0.0f, z), vec3(0, 1, 0)).light.g, 1.0f, 0.02f) << "dark, " << x << " m off, z " << z;
+        EXPECT_NEAR(lightOf(field, vec3(-x, 0.0f, z), vec3(0, 1, 0)).light.g, 100.0f, 2.0f) << "bright, " << x << " m off, z " << z;
+    }
+}
+
+TEST(SurfaceLight, WhatNoProbeKnowsHasTheProbesIrradiance)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
+    FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}, {-0.4f, -0.3f, 0.2f}}, [](vec3) { return 1.0f; });
+    Text text(field, testing_support::defaultQuality());
+    for (size_t i = 0; i < field.irradiance.size(); i += 2)
+    {
+        field.irradiance[i] = text.packRadiance(vec3(7.0f));
+        field.irradiance[i + 1] = text.realToHalf(2.0f);
+    }
+    const auto found = lightOf(field, vec3(0.0f, 0.1f, 0.5f), vec3(0, 0, -1)); // in the open, where something moves
+    EXPECT_EQ(found.probes, -1);
+    EXPECT_NEAR(found.light.g, 7.0f, 0.1f);
+}
+
+TEST(SurfaceLight, PointsThatAreNoneAreBlack)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
+    const FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}}, [](vec3) { return 1.0f; });
+    for (const auto& [point, normal] : {std::pair{vec3(NAN), vec3(0, 1, 0)}, {vec3(0.0f, -1.0f, 0.0f), vec3(0.0f)}, {vec3(INFINITY), vec3(0, 1, 0)}})
+        EXPECT_EQ(lightOf(field, point, normal).light, vec3(0.0f));
+    // At a probe itself there is no direction to it; any finite light will do.
+    EXPECT_TRUE(std::isfinite(lightOf(field, vec3(0.3f, 0.2f, -0.1f), vec3(0, 1, 0)).light.g));
+}
+
+} // namespace
+} // namespace sconce
