@@ -77,7 +77,7 @@ public:
     uint64_t deviceBytes() const;
     bool holdsRadiance() const;    // as rays need it
     bool holdsPrefiltered() const; // as rough reflections need it
-    bool holdsSurfaceLight() const;
+    bool holdsSurfaceLight() const; // diffuse light where surfaces are
     bool holdsPatches() const;     // as diffuse light by patches needs them
     /// Names of the effects that its scene called for when it was baked (SceneEffect::name).
     const std::vector<std::string>& effects() const;
@@ -126,14 +126,15 @@ public:
     /// Record frames in the order in which they are shown, where the effect `temporal` is on. The G-buffer must be visible to compute
     /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
     /// any later stage read these.
-    /// @param timer  optional; scopes "classify tiles", "gather light", "diffuse trace", "glossy trace", "mirror trace", "diffuse fill",
+    /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace", "diffuse fill",
     ///               "glossy fill", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; shaders/compose.comp shows
     // how they make a picture. RGBA32F.
-    Output diffuse() const; // rgb cosine-weighted mean of what surfaces reflect: no albedo, and no light straight from emitters or sky,
-                            // unless it is traced
+    Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: with surface light of all but the host's own
+                            // lights, where a is 0 to 2; where it is -1, and without surface light unless it is traced, of what surfaces
+                            // reflect alone: no light straight from emitters or sky
     Output rough() const;   // rgb radiance reflected to the eye, BRDF included; as the next two
     Output glossy() const;
     Output mirror() const;

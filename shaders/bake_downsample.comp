@@ -43,9 +43,9 @@ void main()
 #else
             uint index = ((push.chart == kChartCube ? at.z * push.size : 0u) + y) * push.size + x;
             vec3 seen = unpackRadiance(push.radiance.word[index]);
-            // Only what surfaces reflect, where emission and sky light surfaces through the list of lights.
-            if (push.allLight == 0u && push.surface.word[index] == 0u) seen = vec3(0.0);
-            else if (push.allLight == 0u && !isNull(push.emitted)) seen = max(seen - unpackRadiance(push.emitted.word[index]), vec3(0.0));
+            // Only what surfaces reflect: emission and sky light surfaces through the list of lights.
+            if (push.surface.word[index] == 0u) seen = vec3(0.0);
+            else if (!isNull(push.emitted)) seen = max(seen - unpackRadiance(push.emitted.word[index]), vec3(0.0));
             sum += weight * seen;
 #endif
             solidAngle += weight;

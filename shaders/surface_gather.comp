@@ -90,7 +90,7 @@ vec3 emittersAt(vec3 point, vec3 normal, vec3 geometric, uvec2 pixel)
     if (!(total > 0.0)) return vec3(0.0);
     uint drawn[kMostShadowRays];
     uint count = 0u;
-    float step = total / float(push.shadowRays), next = randomPair(pixel, 0u, kShadowStream, push.probe).x * step, passed = 0.0;
+    float step = total / float(push.shadowRays), next = randomPair(pixel, 0u, kShadowStream, seedOfProbe()).x * step, passed = 0.0;
     for (uint i = begin; i < end; ++i)
     {
         LightSample s = unshadowedLight(kLightEmitter, i, point);
@@ -123,20 +123,21 @@ void main()
     // Off the surface by what the distance of its texel is packed to, besides.
     vec3 point = probeHeader(push.probe).centre + surface.at + (push.offset + 5e-4 * length(surface.at)) * surface.normal;
     uvec2 pixel = texel.xy + uvec2(field.surfaceSize * texel.z, 0u);
+    uint seed = seedOfProbe();
     TangentFrame tangents = tangentFrame(normal);
     vec3 sky = vec3(0.0);
     float known = 0.0, nearness = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint sampled = i & ((1u << kSampleBits) - 1u), round_ = i >> kSampleBits;
-        vec3 direction = normalize(toWorld(tangents, sampleCosine(randomPair(pixel, sampled, kGatherStream, push.probe + 65536u * round_))));
+        vec3 direction = normalize(toWorld(tangents, sampleCosine(randomPair(pixel, sampled, kGatherStream, seed + 2654435769u * round_))));
         uint link = kLinkNone;
         if (dot(direction, surface.normal) > 0.0)
         {
             TraceResult hit;
             if (!meetsNearby(point - probeHeader(push.probe).centre, direction, hit)) hit = traceRay(point, direction, surface.normal);
             if (hit.status == kMiss) link = kLinkSky;
-            else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, push.probe + 65536u * round_).x);
+            else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, seed + 2654435769u * round_).x);
             nearness += 1.0 / max(hit.t, 1e-6);
         }
         push.links.word[i * texelsOfProbe() + ofProbe] = link;

@@ -169,7 +169,6 @@ gpu::BakePush ProbeBaker::pushFor(vec3 centre) const
     push.skyDistance = 2.0f * info.diagonal;
     push.texels = info.surfaceSize > 0 ? texels.address() : 0;
     push.surfaceSize = info.surfaceSize;
-    push.allLight = info.surfaceSize > 0 ? 1 : 0;
     return push;
 }
 

@@ -29,8 +29,7 @@ struct ProbeTarget
 class ProbeBaker
 {
 public:
-    /// @param info  its surfaceSize says whether there will be surface light; direct light is then of what has no extent alone, and probes'
-    ///              irradiance of all light, emission and sky too
+    /// @param info  its surfaceSize says whether there will be surface light; direct light is then of what has no extent alone
     static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info);
 
     /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.

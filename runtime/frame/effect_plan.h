@@ -7,6 +7,7 @@
 #include "base/knobs.h"
 #include "base/result.h"
 #include "scene/scene_check.h"
+#include "shaders/shared/light_field.h"
 
 namespace sconce
 {
@@ -28,6 +29,12 @@ struct IndirectEffects
     bool temporal = knobs::temporal.value; // filter over time, too, what is filtered over the picture
     bool tiles = true;                     // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
 };
+
+/// Whether frames with these effects read diffuse light from the field's surface light.
+inline bool readsSurfaceLight(const IndirectEffects& e, const gpu::LightFieldInfo& field)
+{
+    return e.diffuse && e.surfaceLight && !e.tracedDiffuse && !e.patches && field.surfaceSize > 0;
+}
 
 /// One effect: whether the scene calls for it and why, what it costs, and whether the plan has it.
 struct PlannedEffect

@@ -39,11 +39,7 @@ struct IndirectLight::State
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
     uint64_t deviceBytes() const;
     /// Whether diffuse light is read from the field's surface light, which has no noise and all sources but the host's in it.
-    bool readsSurfaces() const
-    {
-        const IndirectEffects& e = desc.effects;
-        return e.diffuse && e.surfaceLight && !e.tracedDiffuse && !e.patches && field.holdsSurfaceLight();
-    }
+    bool readsSurfaces() const { return readsSurfaceLight(desc.effects, field.info()); }
 
 private:
     Status makeImage(GpuImage& target, VkFormat format, const char* what);

@@ -24,6 +24,7 @@ namespace
 constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+constexpr uint32_t kUnfilteredSamples = 64; // of emitters, and of the sky, for pixels that the surface light doesn't know
 constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
 
 struct CameraBasis
@@ -161,7 +162,7 @@ Status SceneRenderer::make()
     directSet.write(gpu::kDirectNormalBinding, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(gpu::kDirectLightBinding, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
 
-    if (effects.diffuse && !indirect->state().readsSurfaces()) // which has no noise to filter
+    if (effects.diffuse)
         if (auto s = makeDiffuse(); !s) return s;
     return makeCompose();
 }
@@ -169,11 +170,16 @@ Status SceneRenderer::make()
 bool SceneRenderer::hasAreaLight() const
 {
     const gpu::LightsHeader& lights = scene.lights().header;
-    // Surface light and traced light have them in them, and so has the probes' irradiance of a field with surface light.
-    return !settings.effects.tracedDiffuse && !field.holdsSurfaceLight() && lights.emitterCount + lights.skyCount > 0;
+    return !settings.effects.tracedDiffuse && lights.emitterCount + lights.skyCount > 0; // traced light has them in it
 }
 
-/// Light of emitters and sky, and the filter over all diffuse light.
+/// What surface light doesn't know is little, so it needs no maps of its own.
+bool SceneRenderer::shadowsByField() const
+{
+    return settings.effects.fieldShadows || indirect->state().readsSurfaces();
+}
+
+/// Light of emitters and sky, of all pixels or of those that the surface light doesn't know, and the filter over all diffuse light.
 Status SceneRenderer::makeDiffuse()
 {
     if (hasAreaLight())
@@ -181,8 +187,9 @@ Status SceneRenderer::makeDiffuse()
         const DescriptorSet::Binding bindings[] = {{gpu::kAreaNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                    {gpu::kAreaDiffuseBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                    {gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-        const bool traced = settings.effects.fieldShadows;
-        std::vector<ShaderConstant> constants = {indirect->state().tileList->constant()};
+        const bool traced = shadowsByField();
+        std::vector<ShaderConstant> constants = {indirect->state().tileList->constant(),
+                                                 {gpu::kUnknownOnlyId, indirect->state().readsSurfaces() ? 1u : 0u}};
         if (traced)
             for (const ShaderConstant& ofField : shaderConstants(field)) constants.push_back(ofField);
         if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings,
@@ -193,6 +200,7 @@ Status SceneRenderer::makeDiffuse()
         areaSet.write(gpu::kAreaDiffuseBinding, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
         areaSet.write(gpu::kTileBinding, indirect->state().tileList->buffer());
     }
+    if (indirect->state().readsSurfaces()) return success(); // which has no noise to filter
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
                               settings.width, settings.height};
     auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, scratch);
@@ -243,7 +251,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const Dev
                                           settings.roughness ? faultOf(knobs::roughness, *settings.roughness) : std::string()});
     if (!fault.empty()) return Error{ErrorCode::badArgument, fault};
     const bool mapless = std::ranges::any_of(scene.lights().lights, [](const gpu::GpuLight& l) { return l.shadowLayer == kNoShadowMap; });
-    if (mapless && settings.effects.diffuse && !field.holdsSurfaceLight() && !settings.effects.tracedDiffuse &&
+    if (mapless && settings.effects.diffuse && !readsSurfaceLight(settings.effects, field.info()) && !settings.effects.tracedDiffuse &&
         !settings.effects.fieldShadows)
         return Error{ErrorCode::badArgument,
                      "The scene's emitters and sky have no shadow maps; make it with sceneForFrames() of the same effects, or ask for "
@@ -379,8 +387,10 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     };
     if (areaPass)
     {
-        begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
-        areaPass.push(cmd, gpu::AreaPush{space.origin, space.scale, settings.areaSamples});
+        begin(areaPass, areaSet, "area light", shadowsByField());
+        // Not filtered: as many as make the noise of a few pixels small.
+        const uint32_t samples = indirect->state().readsSurfaces() ? std::max(settings.areaSamples, kUnfilteredSamples) : settings.areaSamples;
+        areaPass.push(cmd, gpu::AreaPush{space.origin, space.scale, samples});
         indirect->state().tileList->dispatch(cmd, gpu::kTermDiffuse);
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "area light", indirect->state().diffuseImage);

@@ -65,6 +65,7 @@ private:
     Status makeDiffuse();
     Status makeCompose();
     bool hasAreaLight() const;
+    bool shadowsByField() const;
     void drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view);
     Result<std::vector<glm::vec4>> readBack(const GpuImage& image, VkImageLayout layout);
 

@@ -48,10 +48,8 @@ struct BakePush
     SCONCE_ADDRESS(SurfaceTexels) texels;  // SurfaceTexel[6][surfaceSize][surfaceSize]
     uint surfaceSize;
     uint probe;
-    uint allLight;      // 1: the probe's irradiance has emission and sky in it
-    uint unused;
 };
-SCONCE_CHECK_SIZE(BakePush, 112);
+SCONCE_CHECK_SIZE(BakePush, 104);
 
 const uint kBakeAreaLightId = 0u; // bake_surface.comp: whether direct light has emitters and sky in it, by their shadow maps
 

@@ -52,6 +52,7 @@ const uint kByPatchesId = 10u;
 const uint kMadeId = 11u; // compose.comp
 const uint kDiffuseLayerId = 12u;
 const uint kGlossyLayerId = 13u;
+const uint kUnknownOnlyId = 14u; // area_light.comp
 
 struct DenoisePush
 {

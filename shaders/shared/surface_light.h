@@ -149,7 +149,7 @@ SCONCE_FN uint nearestSurfaceTexel(uint probe, vec3 point, vec3 normal)
 struct SurfaceLight
 {
     vec3 light; // mean of the arriving radiance, weighted by the cosine
-    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: none, the light is of the probes' irradiance
+    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: none, the light is of the probes' irradiance, which lacks emitters and sky
 };
 
 /// The first component that is largest; -1 when none is above 0.

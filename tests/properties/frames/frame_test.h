@@ -18,8 +18,9 @@ protected:
         return settings;
     }
 
+    /// @param surfaceTexels  by default as few as there are: most tests are about something else
     Result<FieldData> bakeField(const Scene& scene, std::span<const vec3> probes, uint32_t resolution = 128, uint32_t bounces = 2,
-                                uint32_t surfaceTexels = knobs::surfaceTexels.value)
+                                uint32_t surfaceTexels = 26)
     {
         BakeSettings bake;
         bake.surfaceTexels = surfaceTexels;

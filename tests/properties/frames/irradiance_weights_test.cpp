@@ -217,6 +217,7 @@ TEST_F(IrradianceWeightsTest, OursStayBesideThoseOf2017AndOfRtxgi)
             bake.bounces = 2;
             bake.prefiltered = false;
             bake.grid = set->grid;
+            bake.surfaceTexels = 0; // irradiance and patches are what is judged
             bake.octree.voxels = 64;
             bake.scene.light = {.emitterSamples = 24, .skySamples = 32, .emitterShadow = 128, .skyShadow = 512};
             BakeReport report;

@@ -59,6 +59,7 @@ protected:
         bake.resolution = 64;
         bake.bounces = 1;
         bake.scene = fewSamples();
+        bake.surfaceTexels = 26;
         BakeReport report;
         return bakeLightField(gpu().host, scene, kFewProbes, bake, {}, report);
     }

@@ -69,6 +69,7 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     bake.resolution = 64;
     bake.bounces = 1;
     bake.scene = fewSamples();
+    bake.surfaceTexels = 26;
     BakeReport report;
     const auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
     ASSERT_TRUE(field) << field.error().message;

@@ -56,6 +56,7 @@ protected:
         bake.resolution = 128;
         bake.bounces = 1;
         bake.scene = samples();
+        bake.surfaceTexels = 26;
         BakeReport report;
         const auto field = bakeLightField(gpu().host, picture.scene, picture.probes, bake, {}, report);
         EXPECT_TRUE(field) << field.error().message;

@@ -126,6 +126,7 @@ TEST_F(NanScanTest, ABakeAndItsFramesAreCleanAndANaNInTheFieldIsNamedWhereItCome
         bake.resolution = 64;
         bake.chart = chart;
         bake.bounces = 1;
+        bake.surfaceTexels = 26;
         BakeReport report;
         auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
         ASSERT_TRUE(field) << field.error().message;
@@ -195,6 +196,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         bake.resolution = 64;
         bake.chart = chart;
         bake.bounces = 1;
+        bake.surfaceTexels = 26;
         bake.scene.light.sunShadow = 256;
         bake.scene.light.emitterSamples = 8;
         BakeReport report;

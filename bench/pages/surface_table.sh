@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Diffuse light read at surfaces against what it replaced, the probes' irradiance with shadowed samples and a filter: errors, mean and time of a
+# frame, bake time and bytes. Prints the rows of bench/results/surface_light.json.
+# surface_table.sh [SCENE[=COUNT]...] as bench/pages/effects_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180],
+# FRAMES=N timed, the median counts [5], RESOLUTION=texels [256], SPP=paths a pixel [512], OUT=folder, whose references are kept [out/surfaces].
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+scenes=${SCONCE_SCENES:-../shared/scenes}
+out=${OUT:-out/surfaces} size=${SIZE:-320x180} frames=${FRAMES:-5} resolution=${RESOLUTION:-256} spp=${SPP:-512}
+[[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
+sconce=${SCONCE:-build/release/tools/sconce}
+list=("$@")
+[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 sponza/Sponza.gltf=54 modern_hall/modern_hall.glb=50 veach_ajar/veach_ajar.glb=24)
+mkdir -p "$out"
+for entry in "${list[@]}"; do
+    scene=${entry%%=*} count=${entry#*=} camera=()
+    name=$(basename "${scene%.gl*}")
+    [[ -f $scenes/$scene ]] && scene=$scenes/$scene
+    [[ $name == modern_hall ]] && camera=(--eye 5.59993,1.5,3.76821 --target 4.69671,1.50938,3.34018 --fov 75) # the first of its suggested views
+    at=$out/$name
+    "$sconce" place "$scene" --count "$count" -o "$at.probes.json" --quiet > /dev/null
+    [[ -f $at.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --size "$size" --spp "$spp" --bounces 8 --pixel-centre -o "$at.ref.exr" --quiet > /dev/null
+    for texels in 0 52; do
+        "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --bounces 8 --surface-texels $texels --effects all -o "$at.sconce" --json --quiet > "$at.$texels.bake.json"
+        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" -o "$at.$texels.exr" --json --quiet > "$at.$texels.json"
+        "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer diffuse_indirect --metric relmse,flip,mean --json --side-by-side "$at.$texels.png" > "$at.$texels.diffuse.json"
+        "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer glossy_indirect --metric flip,mean --json > "$at.$texels.glossy.json"
+    done
+    python3 - "$at" "$name" "$count" <<'P'
+import json, sys
+at, name, count = sys.argv[1:]
+load = lambda end: json.load(open(f"{at}.{end}.json"))
+row = {"label": f"{name}, {count}"}
+for texels, way in (("0", "irradiance"), ("52", "surface")):
+    error, glossy, bake = load(f"{texels}.diffuse"), load(f"{texels}.glossy"), load(f"{texels}.bake")
+    passes = load(texels)["passes_ms"]
+    ms = sum(passes.get(p, 0.0) for p in ("gather light", "surface light", "area light", "diffuse denoise"))
+    row |= {f"{way}_relmse": f"{error['relmse']:.4f}", f"{way}_flip": f"{error['flip']:.3f}", f"{way}_mean": f"{error['mean']:.2f}",
+            f"{way}_glossy_flip": f"{glossy['flip']:.3f}", f"{way}_glossy_mean": f"{glossy['mean']:.2f}", f"{way}_ms": f"{ms:.0f}",
+            f"{way}_bake_s": f"{bake['seconds']:.0f}", f"{way}_kib": f"{bake['bytes']['total'] / bake['probes'] / 1024:.0f}"}
+row["flip_ratio"] = f"{float(row['surface_flip']) / float(row['irradiance_flip']):.2f}"
+row["time_ratio"] = f"{float(row['surface_ms']) / float(row['irradiance_ms']):.2f}"
+print(f'  "{name.lower().replace("-", "_")}": {json.dumps(row)},')
+P
+done
