@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 
 namespace sconce
@@ -18,7 +19,7 @@ std::vector<uint32_t> weld(const std::vector<vec3>& positions)
     return first;
 }
 
-std::vector<Outside> outsideOfParts(const Scene& scene)
+std::vector<Outside> outsideOf(const Scene& scene, std::span<const uint32_t> triangles)
 {
     const std::vector<uint32_t> welded = weld(scene.positions);
     // Parts by their lowest vertex (union-find with path halving).
@@ -67,11 +68,34 @@ std::vector<Outside> outsideOfParts(const Scene& scene)
         for (; i < edges.size() && edges[i].between == between; ++i) sum += edges[i].way;
         if (sum != 0) open[rootOf(uint32_t(between >> 32))] = true;
     }
-    std::vector<Outside> outside(scene.triangles.size(), Outside::both);
-    for (size_t i = 0; i < outside.size(); ++i)
+    std::map<uint32_t, Bounds> closed; // of the parts asked about, by root
+    for (const uint32_t triangle : triangles)
     {
-        const uint32_t root = rootOf(welded[scene.triangles[i].x]);
-        if (!open[root] && volume[root] != 0.0) outside[i] = volume[root] > 0.0 ? Outside::front : Outside::back;
+        const uint32_t root = rootOf(welded[scene.triangles[triangle].x]);
+        if (!open[root] && volume[root] != 0.0) closed.emplace(root, Bounds());
+    }
+    for (const uvec3 t : scene.triangles)
+        if (const auto part = closed.find(rootOf(welded[t.x])); part != closed.end())
+            for (int i = 0; i < 3; ++i) part->second.add(scene.positions[t[i]]);
+    const Bounds all = scene.bounds();
+    std::erase_if(closed,
+                  [&](const auto& part)
+                  {
+                      const auto& [root, box] = part;
+                      if (box.low == all.low && box.high == all.high) return true;
+                      for (const uvec3 t : scene.triangles)
+                      {
+                          const vec3 p = scene.positions[t.x];
+                          const bool within = glm::all(glm::greaterThan(p, box.low)) && glm::all(glm::lessThan(p, box.high));
+                          if (within && rootOf(welded[t.x]) != root) return true;
+                      }
+                      return false;
+                  });
+    std::vector<Outside> outside;
+    for (const uint32_t triangle : triangles)
+    {
+        const uint32_t root = rootOf(welded[scene.triangles[triangle].x]);
+        outside.push_back(!closed.contains(root) ? Outside::both : volume[root] > 0.0 ? Outside::front : Outside::back);
     }
     return outside;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/scene.h"
@@ -19,8 +20,9 @@ enum class Outside : int8_t
     back = -1,
 };
 
-/// For every triangle: `front` or `back` where it belongs to a closed part, triangles joined by corners each of whose edges is run along as often
-/// one way as the other, else `both`. Cost: a sort of all edges.
-std::vector<Outside> outsideOfParts(const Scene& scene);
+/// For each of some triangles: `front` or `back` where it belongs to a closed part, triangles joined by corners each of whose edges is run along
+/// as often one way as the other, in which there is nothing; else `both`: a room is seen from its inside, and so may be all that there is.
+/// Cost: a sort of all edges, and a look at each vertex for each closed part asked about.
+std::vector<Outside> outsideOf(const Scene& scene, std::span<const uint32_t> triangles);
 
 } // namespace sconce

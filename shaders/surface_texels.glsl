@@ -15,10 +15,3 @@ bool findTexel(out uvec3 texel, out uint ofProbe, out uint index)
     return texel.x < side && texel.y < side && (push.texels.value[index].normal & kSurfaceKnown) != 0u;
 }
 uint texelsOfProbe() { return 6u * field.surfaceSize * field.surfaceSize; }
-
-/// Of the random numbers of a probe's texels: by where it stands, so that the order of the probes changes nothing.
-uint seedOfProbe()
-{
-    uvec3 bits = floatBitsToUint(probeHeader(push.probe).centre);
-    return bits.x * 747796405u ^ bits.y * 2891336453u ^ bits.z * 277803737u;
-}

@@ -280,8 +280,7 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     spent.gatherSeconds = watch.lap();
     // What surfaces send of direct light is in the probes' radiance already; so the light without a bounce adds only what it sends besides.
     auto before = surfaces->meanSent();
-    // A frame shows light after one scattering more than what probes hold; here it reads what arrives, which has one fewer.
-    for (uint32_t b = 0; before && b <= settings.bounces + 1; ++b)
+    for (uint32_t b = 0; before && b <= settings.bounces; ++b)
     {
         if (auto status = cancelledIfAsked(fmt::format("bounce {}", b), 0, 1); !status) return status;
         if (auto status = surfaces->bounce(); !status) return status;
@@ -294,17 +293,19 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
             spent.energy.back() += added;
             continue;
         }
-        if (b > settings.bounces) break;
         spent.energy.push_back(added);
         field.bounces = b;
         if (added < double(settings.converged) * *sent) break;
     }
     if (!before) return before.error();
     field.surfaceLight.resize(texels.size());
-    if (auto status = surfaces->finish(field.surfaceLight); !status) return status;
+    if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     auto lit = asItIs(gpu);
     if (!lit) return lit.error();
-    return reflect(*lit, baker, "radiance", {});
+    if (auto status = reflect(*lit, baker, "radiance", {}); !status) return status;
+    // What arrives at a surface has been scattered once less than what it sends: once more, so that frames show as many bounces by either.
+    if (auto status = surfaces->bounce(); !status) return status;
+    return surfaces->read(field.surfaceLight);
 }
 
 } // namespace

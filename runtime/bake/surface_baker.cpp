@@ -40,6 +40,7 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
     for (const Need& need : {Need{first, texels.size() * 16, "first light at surfaces"}, Need{light, texels.size() * 16, "light at surfaces"},
                              Need{sent, texels.size() * 4, "light that surfaces send"},
                              Need{sentBefore, texels.size() * 4, "light that surfaces sent"},
+                             Need{filtered, texels.size() * 4, "filtered light at surfaces"},
                              Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
     {
         auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
@@ -93,10 +94,12 @@ Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, uint32_t
         {
             const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
             pipeline.bind(cmd, std::span(sets).first(withScene ? 2 : 1));
-            pipeline.push(cmd, pushFor(probe, rays));
+            gpu::SurfacePush push = pushFor(probe, rays);
+            if (&written == &filtered) push.sent = filtered.address();
+            pipeline.push(cmd, push);
             const uint32_t groups = (field.info().surfaceSize + 7) / 8;
             gpu->vk.CmdDispatch(cmd, groups, groups, 6);
-            if (&written != &sent) scanBuffer(*gpu, cmd, name, written, {}); // those are words, not floats
+            if (&written != &filtered) scanBuffer(*gpu, cmd, name, written, {}); // those are words, not floats
             // For the copies out, which are of the next submit.
             memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
@@ -141,11 +144,11 @@ Result<double> SurfaceBaker::meanSent()
     return sum / all;
 }
 
-Status SurfaceBaker::finish(std::span<uint32_t> words)
+Status SurfaceBaker::read(std::span<uint32_t> words)
 {
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
-        if (auto status = dispatch(filterPass, false, probe, 0, "surface filter", sent); !status) return status;
-    return gpu->download(sent, 0, std::as_writable_bytes(words));
+        if (auto status = dispatch(filterPass, false, probe, 0, "surface filter", filtered); !status) return status;
+    return gpu->download(filtered, 0, std::as_writable_bytes(words));
 }
 
 } // namespace sconce

@@ -34,7 +34,7 @@ public:
     /// direct light alone.
     Result<double> meanSent();
     /// The light as a field holds it, filtered: [probe][6 surfaceSize^2], RGB9E5.
-    Status finish(std::span<uint32_t> light);
+    Status read(std::span<uint32_t> light);
     uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
 
 private:
@@ -52,7 +52,7 @@ private:
     LightField field;
     Desc desc;
     Pipeline gatherPass, bouncePass, filterPass;
-    Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore; // of all probes but the links, which are of one
+    Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
     std::vector<uint32_t> links;                                   // [probe][ray][texel]
     bool lit = false;                                              // the light without a bounce is made
 };

@@ -48,7 +48,9 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
     }
     if (!(power > 0.0)) return;
     // A back that nobody sees lights nothing: shadows are not exact enough to keep the light of a small globe's far side in it.
-    const std::vector<Outside> outside = outsideOfParts(scene);
+    std::vector<uint32_t> shining;
+    for (const Emitter& emitter : emitters) shining.push_back(emitter.triangle);
+    const std::vector<Outside> outside = outsideOf(scene, shining);
     // Half by power and half by area: a dim lamp alone in its room has samples beside bright ones elsewhere.
     double shares = 0.0;
     for (Emitter& emitter : emitters)
@@ -73,8 +75,9 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         gpu::GpuLight light{};
         light.type = gpu::kLightEmitter;
         light.position = (point - space.origin) / space.scale;
-        light.direction = geometricNormal(scene, emitter.triangle) * (outside[emitter.triangle] == Outside::back ? -1.0f : 1.0f);
-        light.innerCone = outside[emitter.triangle] == Outside::both ? 0.0f : 1.0f;
+        const Outside side = outside[size_t(&emitter - emitters.data())];
+        light.direction = geometricNormal(scene, emitter.triangle) * (side == Outside::back ? -1.0f : 1.0f);
+        light.innerCone = side == Outside::both ? 0.0f : 1.0f;
         light.intensity = emitter.emission;
         // About count * share samples fall on an emitter; each stands for its part of the area.
         light.area = float(emitter.area / (count * emitter.share));

@@ -87,6 +87,7 @@ BakeSettings settingsFor(uint32_t resolution, uint32_t bounces = 0, uint32_t cha
     settings.bounces = bounces;
     settings.chart = chart;
     settings.octree.voxels = 16;
+    settings.surfaceTexels = 0; // tests/runtime/bake/surface_baker_test.cpp has what that changes
     settings.scene.light.sunShadow = 1024;
     settings.scene.light.skyShadow = 256;
     return settings;

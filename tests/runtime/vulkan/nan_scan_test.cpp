@@ -169,6 +169,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"surface texels", "as those of a probe"},
         {"links of a probe's surfaces", "integers"},
         {"light that surfaces send", "as surface texels; the light that they are made of is scanned"},
+        {"filtered light at surfaces", "as light that surfaces send"},
         {"light that surfaces sent", "as light that surfaces send"},
         {"probe headers", "as distances"},
         {"rays", "from the host: the tracer answers any number"},
