@@ -132,9 +132,9 @@ public:
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; shaders/compose.comp shows
     // how they make a picture. RGBA32F.
-    Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: with surface light of all but the host's own
-                            // lights, where a is 0 to 2; where it is -1, and without surface light unless it is traced, of what surfaces
-                            // reflect alone: no light straight from emitters or sky
+    Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it is read
+                            // from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or sky.
+                            // a, of surface light: SurfaceLight::probes, what it is from
     Output rough() const;   // rgb radiance reflected to the eye, BRDF included; as the next two
     Output glossy() const;
     Output mirror() const;

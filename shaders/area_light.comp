@@ -17,7 +17,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = kAreaNormalBinding) uniform texture2D gGeometricNormal;
 layout(set = 1, binding = kAreaDiffuseBinding, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
 layout(scalar, push_constant) uniform Push { AreaPush push; };
-layout(constant_id = kUnknownOnlyId) const bool kUnknownOnly = false; // only pixels that the surface light doesn't know: what moves
 
 #ifdef SCONCE_FIELD_SHADOWS
 /// As lightAt() of lights.glsl.
@@ -61,12 +60,10 @@ void main()
     if (!findPixel(kTermDiffuse, at)) return;
     Pixel p = readPixel(at);
     if (!p.surface || isNotOf(kTermDiffuse, termsOf(p))) return;
-    vec4 found = imageLoad(diffuse, at);
-    if (kUnknownOnly && found.a >= 0.0) return;
-    vec3 light = found.rgb;
+    vec3 light = imageLoad(diffuse, at).rgb;
     vec3 point = (p.position - push.origin) / push.scale;
     vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
     vec3 irradiance = someLights(kLightEmitter, p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
                       someLights(kLightSky, p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
-    imageStore(diffuse, at, vec4(light + irradiance / kBrdfPi, found.a));
+    imageStore(diffuse, at, vec4(light + irradiance / kBrdfPi, 1.0));
 }

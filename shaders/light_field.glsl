@@ -75,6 +75,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/probe_trace.h"
 #include "shared/prefiltered.h"
 #include "shared/light_lookup.h"
+#include "shared/light_cells.h"
 #include "shared/surface_light.h"
 #include "shared/ray_query.h"
 /// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.

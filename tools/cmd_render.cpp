@@ -144,6 +144,16 @@ void addCounts(Json& json, const RenderedFrame& frame, uint32_t samples)
     json["handoffs_per_ray"] = handoffs / (traced * samples);
 }
 
+/// Shares of the pixels whose diffuse light is of surface light, by what it is from.
+void addDiffuseFrom(Json& json, const RenderedFrame& frame)
+{
+    size_t all = 0;
+    for (const size_t pixels : frame.diffuseFrom) all += pixels;
+    if (all == 0) return;
+    const char* const names[] = {"nothing", "cells", "nearest_texel", "one_probe", "two_probes"};
+    for (size_t i = 0; i < frame.diffuseFrom.size(); ++i) json["diffuse_from"][names[i]] = double(frame.diffuseFrom[i]) / double(all);
+}
+
 double median(std::vector<double> values)
 {
     std::ranges::sort(values);
@@ -270,6 +280,7 @@ int runRender(RenderOptions options, const Context& context)
     for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
     // Only the rays of reflections are counted; frames without them have no means to give.
     if (settings.effects.glossy || settings.effects.mirror) addCounts(json, *frame, settings.glossyRays);
+    addDiffuseFrom(json, *frame);
     if (Status status = options.pictures.write(imagesOf(*frame), json); !status) return fail(status.error());
     // After the pictures are written, so that the cost has that in it.
     addCost(json, watch);

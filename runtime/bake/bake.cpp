@@ -298,7 +298,7 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
         if (added < double(settings.converged) * *sent) break;
     }
     if (!before) return before.error();
-    field.surfaceLight.resize(texels.size());
+    field.surfaceLight.resize(texels.size() + cellWords(field.info));
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     auto lit = asItIs(gpu);
     if (!lit) return lit.error();
@@ -391,6 +391,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         spent.probeSeconds = watch.lap();
         // The bounces find their probes by the octree, so it comes before them.
         if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
+        if (info.surfaceSize > 0) info.cellShift = cellShiftOf(info);
         spent.octreeSeconds = watch.lap();
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
         if (settings.bounces > 0 || info.surfaceSize > 0) bake.direct = bake.field.radiance;

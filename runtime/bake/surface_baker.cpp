@@ -8,6 +8,7 @@
 #include "runtime/vulkan/nan_scan.h"
 #include "shaders/shared/pure.h"
 
+#include "spirv/cell_gather_comp.h"
 #include "spirv/surface_bounce_comp.h"
 #include "spirv/surface_filter_comp.h"
 #include "spirv/surface_gather_comp.h"
@@ -40,7 +41,7 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
     for (const Need& need : {Need{first, texels.size() * 16, "first light at surfaces"}, Need{light, texels.size() * 16, "light at surfaces"},
                              Need{sent, texels.size() * 4, "light that surfaces send"},
                              Need{sentBefore, texels.size() * 4, "light that surfaces sent"},
-                             Need{filtered, texels.size() * 4, "filtered light at surfaces"},
+                             Need{filtered, words() * 4, "filtered light at surfaces"},
                              Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
     {
         auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
@@ -50,6 +51,7 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
     const VkDescriptorSetLayout sets[] = {field.layout(), scene->layout()};
     const auto constants = shaderConstants(field);
     for (const auto& [pipeline, code, setCount] : {std::tuple<Pipeline*, Spirv, size_t>{&gatherPass, surface_gather_comp, 2},
+                                                   {&cellPass, cell_gather_comp, 2},
                                                    {&bouncePass, surface_bounce_comp, 1},
                                                    {&filterPass, surface_filter_comp, 1}})
     {
@@ -144,11 +146,31 @@ Result<double> SurfaceBaker::meanSent()
     return sum / all;
 }
 
-Status SurfaceBaker::read(std::span<uint32_t> words)
+/// Of what the texels sent before the last bounce, as what arrived at them.
+Status SurfaceBaker::gatherCells()
 {
+    return gpu->submit(
+        [&](VkCommandBuffer cmd)
+        {
+            const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
+            cellPass.bind(cmd, sets);
+            gpu::SurfacePush push = pushFor(0, desc.rays);
+            push.sent = filtered.address();
+            cellPass.push(cmd, push);
+            const size_t facings = 6 * cellWords(field.info()) / gpu::kCellWords;
+            gpu->vk.CmdDispatch(cmd, uint32_t((facings + gpu::kCellGroup - 1) / gpu::kCellGroup), 1, 1);
+            memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
+        });
+}
+
+Status SurfaceBaker::read(std::span<uint32_t> found)
+{
+    assert(found.size() == words());
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
         if (auto status = dispatch(filterPass, false, probe, 0, "surface filter", filtered); !status) return status;
-    return gpu->download(filtered, 0, std::as_writable_bytes(words));
+    if (auto status = gatherCells(); !status) return status;
+    return gpu->download(filtered, 0, std::as_writable_bytes(found));
 }
 
 } // namespace sconce

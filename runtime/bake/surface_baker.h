@@ -33,7 +33,7 @@ public:
     /// Mean over probes and directions of the radiance, luminance (Rec. 709), that the texels send after the last bounce; before the first, of
     /// direct light alone.
     Result<double> meanSent();
-    /// The light as a field holds it, filtered: [probe][6 surfaceSize^2], RGB9E5.
+    /// The light as FieldData::surfaceLight, filtered, and with that of the cells, which has as many bounces.
     Status read(std::span<uint32_t> light);
     uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
 
@@ -43,15 +43,17 @@ private:
     {
     }
     Status make(std::span<const gpu::SurfaceTexel> texels);
+    Status gatherCells();
     Status dispatch(const Pipeline& pipeline, bool withScene, uint32_t probe, uint32_t rays, const char* name, const Buffer& written);
     gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
+    size_t words() const { return texelsOfProbe() * field.info().probeCount + cellWords(field.info()); }
     size_t texelsOfProbe() const { return size_t(6) * field.info().surfaceSize * field.info().surfaceSize; }
 
     Gpu* gpu;
     const DeviceScene* scene;
     LightField field;
     Desc desc;
-    Pipeline gatherPass, bouncePass, filterPass;
+    Pipeline gatherPass, bouncePass, filterPass, cellPass;
     Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
     std::vector<uint32_t> links;                                   // [probe][ray][texel]
     bool lit = false;                                              // the light without a bounce is made

@@ -21,6 +21,7 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
     bytes.radiance = field.radiance.size() * sizeof(uint32_t) + bytes.prefiltered;
     bytes.surface = field.surfaceLight.size() * sizeof(uint32_t);
+    bytes.cells = field.surfaceLight.empty() ? 0 : cellWords(field.info) * sizeof(uint32_t);
     bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface;
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
@@ -60,6 +61,27 @@ size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels
         size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
     const size_t patches = chart == gpu::kChartCube && surface == 0 ? size_t(2) * gpu::kPatches : 0;
     return (words + patches + size_t(6) * surface * surface) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+}
+
+glm::ivec3 lightCells(const gpu::LightFieldInfo& info)
+{
+    const int more = (1 << info.cellShift) - 1;
+    return ((glm::ivec3(info.topCells) << info.topShift) + more) >> info.cellShift;
+}
+
+int cellShiftOf(const gpu::LightFieldInfo& info)
+{
+    constexpr size_t kCellsOfProbe = 512; // 14 KiB
+    gpu::LightFieldInfo finer = info;
+    finer.surfaceSize = 1;
+    for (finer.cellShift = 1; finer.cellShift < 15 && cellWords(finer) > gpu::kCellWords * kCellsOfProbe * info.probeCount;) ++finer.cellShift;
+    return finer.cellShift;
+}
+
+size_t cellWords(const gpu::LightFieldInfo& info)
+{
+    const glm::ivec3 count = lightCells(info);
+    return info.surfaceSize > 0 ? gpu::kCellWords * size_t(count.x) * size_t(count.y) * size_t(count.z) : 0;
 }
 
 } // namespace sconce

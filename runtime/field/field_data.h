@@ -29,8 +29,8 @@ struct FieldData
     std::vector<uint32_t> prefiltered; // [probe][kPrefilteredWords]: R11G11B10F radiance, layout: shaders/shared/prefiltered.h
     std::vector<uint32_t> patches; // [probe][face][v][u][2], cube faces only: half q | normal 8+8 << 16, then R11G11B10F radiance without
                                    // emission and sky, of what is seen through a window of kPatchSide^2 a face: see patchIrradiance()
-    std::vector<uint32_t> surfaceLight; // [probe][face][y][x], info.surfaceSize texels a side, RGB9E5: shaders/shared/surface_light.h;
-                                        // empty: baked without
+    std::vector<uint32_t> surfaceLight; // [probe][face][y][x], info.surfaceSize texels a side, RGB9E5: shaders/shared/surface_light.h; then
+                                        // [cell][kCellWords]: light_cells.h; empty: baked without
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -44,7 +44,7 @@ struct FieldBytes
 {
     size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches and surface light
     size_t prefiltered = 0;                                                    // of the radiance
-    size_t surface = 0;                                                        // surface light, of the irradiance
+    size_t surface = 0, cells = 0;                                             // surface light with its cells, and those: of the irradiance
     size_t total() const { return distance + normals + radiance + irradiance + index; }
 };
 FieldBytes bytesByPart(const FieldData& field);
@@ -65,5 +65,12 @@ size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels
 
 /// Texels a side of a face of the surface light that a bake makes, where so many are asked for; 0 with octahedral maps.
 uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels);
+
+/// Cells of light in the open along each axis: shaders/shared/light_cells.h.
+glm::ivec3 lightCells(const gpu::LightFieldInfo& info);
+/// LightFieldInfo::cellShift of a new field: the finest cells, of two voxels or more, that there are at most 512 of for a probe.
+int cellShiftOf(const gpu::LightFieldInfo& info);
+/// Words of FieldData::surfaceLight that the cells take, after the texels of all probes; 0 without surface light.
+size_t cellWords(const gpu::LightFieldInfo& info);
 
 } // namespace sconce

@@ -129,6 +129,23 @@ std::optional<uint64_t> product(std::initializer_list<uint64_t> factors)
     return result;
 }
 
+/// Of the cells of light in the open; nothing where the octree's grid is impossible, which octreeProblem() says in words.
+std::optional<uint64_t> wordsOfCells(const OctreeHeader& tree, int cellShift)
+{
+    if (cellShift < 0 || cellShift > 15) return {};
+    gpu::LightFieldInfo grid{};
+    grid.surfaceSize = 1;
+    grid.cellShift = cellShift;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        if (tree.topShift < 0 || tree.topShift > 15 || tree.topCells[axis] < 1 || (int64_t(tree.topCells[axis]) << tree.topShift) > 1 << 16)
+            return {};
+        grid.topCells[axis] = tree.topCells[axis];
+    }
+    grid.topShift = tree.topShift;
+    return cellWords(grid);
+}
+
 /// What is wrong with the sizes, as a sentence; empty when every array has the length that info and octree call for.
 std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, const uint64_t (&rawBytes)[sectionCount])
 {
@@ -143,6 +160,8 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
     if (tree.marker != kMostProbesOf8Bits && tree.marker != kMostProbes)
         return fmt::format("its octree's marker {} is neither 255 nor 65535", tree.marker);
     const uint64_t n = i.probeCount;
+    const std::optional<uint64_t> texels = product({n, 6, i.surfaceSize, i.surfaceSize});
+    const std::optional<uint64_t> cells = i.surfaceSize > 0 ? wordsOfCells(tree, i.cellShift) : 0;
     const std::optional<uint64_t> expected[sectionCount] = {
         rawBytes[meta],
         sizeof(gpu::LightFieldInfo),
@@ -154,7 +173,7 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
         product({n, gpu::kPrefilteredWords, 4}),
         product({n, gpu::kPatches, 8}),
-        product({n, 6, i.surfaceSize, i.surfaceSize, 4}),
+        texels && cells ? product({*texels + *cells, 4}) : std::nullopt,
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {

@@ -31,6 +31,8 @@ template <class Real> struct LightFieldTwin
     static constexpr uint kChartCube = gpu::kChartCube;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
+    static constexpr uint kCellWords = gpu::kCellWords;
+    static constexpr uint kCellKnown = gpu::kCellKnown;
     static constexpr int kPatchSide = gpu::kPatchSide;
     static constexpr uint kPatches = gpu::kPatches;
     static constexpr uint kPrefilteredSize = gpu::kPrefilteredSize;
@@ -107,6 +109,8 @@ template <class Real> struct LightFieldTwin
 #include "shaders/shared/prefiltered.h"
 
 #include "shaders/shared/light_lookup.h"
+
+#include "shaders/shared/light_cells.h"
 
 #include "shaders/shared/surface_light.h"
 

@@ -117,9 +117,9 @@ VkSamplerCreateInfo samplerInfo(VkFilter filter, VkSamplerAddressMode wrap)
 DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field)
 {
     DeviceSceneDesc desc;
-    if (!effects.diffuse || effects.tracedDiffuse)
+    if (!effects.diffuse || effects.tracedDiffuse || readsSurfaceLight(effects, field))
         desc.light.emitterSamples = desc.light.skySamples = 0;
-    else if (effects.fieldShadows || readsSurfaceLight(effects, field))
+    else if (effects.fieldShadows)
     {
         desc.light.areaShadows = false;
         desc.light.emitterSamples = desc.light.skySamples = kTracedLightSamples;

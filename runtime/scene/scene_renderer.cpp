@@ -24,7 +24,6 @@ namespace
 constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr uint32_t kUnfilteredSamples = 64; // of emitters, and of the sky, for pixels that the surface light doesn't know
 constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
 
 struct CameraBasis
@@ -173,23 +172,17 @@ bool SceneRenderer::hasAreaLight() const
     return !settings.effects.tracedDiffuse && lights.emitterCount + lights.skyCount > 0; // traced light has them in it
 }
 
-/// What surface light doesn't know is little, so it needs no maps of its own.
-bool SceneRenderer::shadowsByField() const
-{
-    return settings.effects.fieldShadows || indirect->state().readsSurfaces();
-}
-
-/// Light of emitters and sky, of all pixels or of those that the surface light doesn't know, and the filter over all diffuse light.
+/// Light of emitters and sky, and the filter over all diffuse light: nothing of it with surface light, which has all in it and no noise.
 Status SceneRenderer::makeDiffuse()
 {
+    if (indirect->state().readsSurfaces()) return success();
     if (hasAreaLight())
     {
         const DescriptorSet::Binding bindings[] = {{gpu::kAreaNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                    {gpu::kAreaDiffuseBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                    {gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-        const bool traced = shadowsByField();
-        std::vector<ShaderConstant> constants = {indirect->state().tileList->constant(),
-                                                 {gpu::kUnknownOnlyId, indirect->state().readsSurfaces() ? 1u : 0u}};
+        const bool traced = settings.effects.fieldShadows;
+        std::vector<ShaderConstant> constants = {indirect->state().tileList->constant()};
         if (traced)
             for (const ShaderConstant& ofField : shaderConstants(field)) constants.push_back(ofField);
         if (auto s = makePass(areaPass, areaSet, traced ? Spirv(area_light_field_comp) : Spirv(area_light_comp), bindings,
@@ -200,7 +193,6 @@ Status SceneRenderer::makeDiffuse()
         areaSet.write(gpu::kAreaDiffuseBinding, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
         areaSet.write(gpu::kTileBinding, indirect->state().tileList->buffer());
     }
-    if (indirect->state().readsSurfaces()) return success(); // which has no noise to filter
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
                               settings.width, settings.height};
     auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, scratch);
@@ -387,10 +379,8 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     };
     if (areaPass)
     {
-        begin(areaPass, areaSet, "area light", shadowsByField());
-        // Not filtered: as many as make the noise of a few pixels small.
-        const uint32_t samples = indirect->state().readsSurfaces() ? std::max(settings.areaSamples, kUnfilteredSamples) : settings.areaSamples;
-        areaPass.push(cmd, gpu::AreaPush{space.origin, space.scale, samples});
+        begin(areaPass, areaSet, "area light", settings.effects.fieldShadows);
+        areaPass.push(cmd, gpu::AreaPush{space.origin, space.scale, settings.areaSamples});
         indirect->state().tileList->dispatch(cmd, gpu::kTermDiffuse);
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "area light", indirect->state().diffuseImage);
@@ -511,11 +501,21 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index
         std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));
     }
     if (auto s = colors(frame.normal, normalRoughness, read, &frame.roughness); !s) return s.error();
-    if (auto s = colors(frame.albedo, baseColorMetallic, read); !s) return s.error();
+    std::vector<float> metallic;
+    if (auto s = colors(frame.albedo, baseColorMetallic, read, &metallic); !s) return s.error();
     std::vector<vec3> depths;
     if (auto s = colors(depths, depth, read); !s) return s.error();
     frame.depth.resize(pixels);
     for (size_t i = 0; i < pixels; ++i) frame.depth[i] = depths[i].x > 0.0f ? kNear * field.info().scale / depths[i].x : 0.0f;
+    if (indirect->state().readsSurfaces())
+    {
+        std::vector<vec3> light;
+        std::vector<float> probes; // SurfaceLight::probes, from -2 on, where a pixel has the term: as termsOf() of shaders/shared/frame.h says
+        if (auto s = colors(light, indirect->state().diffuseImage, general, &probes); !s) return s.error();
+        for (size_t i = 0; i < pixels; ++i)
+            if (frame.depth[i] > 0.0f && metallic[i] < 1.0f && glm::any(glm::greaterThan(frame.albedo[i], vec3(0.0f))))
+                ++frame.diffuseFrom[size_t(int(probes[i]) + 2)];
+    }
     return frame;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "runtime/frame/indirect_light.h"
@@ -37,6 +38,8 @@ struct RenderedFrame
     std::vector<float> roughness;
     std::vector<glm::uvec4> counts;     // probe, hand-offs, reads, unknown rays of the glossy trace
     std::vector<GpuTimer::Scope> times; // milliseconds a pass, by the GPU's clock
+    std::array<size_t, 5> diffuseFrom{}; // pixels whose diffuse light is of surface light: of nothing that is known, of cells in the open, of the
+                                         // nearest texel, of one probe, of two; 0 with other diffuse light
 };
 
 class SceneRenderer
@@ -65,7 +68,6 @@ private:
     Status makeDiffuse();
     Status makeCompose();
     bool hasAreaLight() const;
-    bool shadowsByField() const;
     void drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view);
     Result<std::vector<glm::vec4>> readBack(const GpuImage& image, VkImageLayout layout);
 

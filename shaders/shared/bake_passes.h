@@ -65,7 +65,7 @@ struct SurfacePush
     SCONCE_ADDRESS(SurfaceFloats) light;  // of all probes: mean radiance that arrives, 0
     SCONCE_ADDRESS(BakeWords) links;      // of this probe, [ray][texel]
     SCONCE_ADDRESS(BakeWords) sentBefore; // of all probes: radiance that each texel sends, RGB9E5
-    SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter, the surface light
+    SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter and of cells, the surface light
     uint probe;
     uint rays;       // a texel
     uint shadowRays; // a texel, to emitters
@@ -73,6 +73,7 @@ struct SurfacePush
 };
 SCONCE_CHECK_SIZE(SurfacePush, 64);
 const uint kMostShadowRays = 32u;
+const uint kCellGroup = 64u; // facings of cells a workgroup of cell_gather.comp
 
 SCONCE_STRUCTS_END
 #endif

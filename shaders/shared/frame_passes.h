@@ -52,7 +52,6 @@ const uint kByPatchesId = 10u;
 const uint kMadeId = 11u; // compose.comp
 const uint kDiffuseLayerId = 12u;
 const uint kGlossyLayerId = 13u;
-const uint kUnknownOnlyId = 14u; // area_light.comp
 
 struct DenoisePush
 {

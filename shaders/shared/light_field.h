@@ -23,6 +23,8 @@ const int kPrefilteredLevels = 4;
 const uint kPrefilteredWords = 5440u; // of a probe, all levels
 const int kPatchSide = 6;          // patches a side of a cube face: what a probe sees, coarsely, for diffuse light
 const uint kPatches = 216u;        // of a probe
+const uint kCellWords = 7u;        // of a cell of light in the open: light_cells.h
+const uint kCellKnown = 0x40000000u; // of a cell's place: there is one
 const uint kLowFactor = 16u;       // texels of the octahedral map a texel of its low-resolution map covers, per axis
 
 struct ProbeHeader
@@ -59,7 +61,7 @@ struct LightFieldInfo
     vec3 gridOrigin; // field space, probe (0,0,0)
     uint surfaceSize; // texels a side of a face of the surface light; 0: there is none
     vec3 gridStep;   // field units
-    float unused1;
+    int cellShift;   // a cell of light in the open is 2^cellShift finest voxels wide: light_cells.h
     vec3 sky;        // radiance where nothing is hit, W/(m^2 sr)
     float unused2;
     vec3 sceneLow;   // field space: the scene's bounds

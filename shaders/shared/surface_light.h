@@ -1,6 +1,6 @@
 // Surface light: the light that arrives at the surface points that a probe sees, one value a texel: a lightmap without a parametrisation of the
 // scene. A point that a probe sees reads its own light there, where probes in the open know only the light of the open. Shared text, see
-// probe_trace.h; needs surfaceWord(uint), planeSeen() and rankedProbesAt() besides.
+// probe_trace.h; needs surfaceWord(uint), planeSeen(), rankedProbesAt() and light_cells.h besides.
 //
 // A surface map has `surfaceSize` texels a side of each cube face, fewer than the distance map. Its texel stands for one point, that of the
 // distance texel that holds its centre: one that the probe sees. (Where the centre's own direction meets that texel's plane may lie beyond an edge,
@@ -149,7 +149,7 @@ SCONCE_FN uint nearestSurfaceTexel(uint probe, vec3 point, vec3 normal)
 struct SurfaceLight
 {
     vec3 light; // mean of the arriving radiance, weighted by the cosine
-    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: none, the light is of the probes' irradiance, which lacks emitters and sky
+    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: the cells in the open; -2: nothing knows, so it is black
 };
 
 /// The first component that is largest; -1 when none is above 0.
@@ -161,7 +161,8 @@ SCONCE_FN int largestOf(vec4 v)
 }
 
 /// Light at a surface point from what its probes see of it: of a leaf's probes the two that see most of it, and of their texels those of the same
-/// surface. Cost: about 25 reads; up to 50 more where no texel shows the point.
+/// surface. Cost: about 25 reads; up to 50 more where no texel shows the point, and up to 44 where nothing
+/// near it does (light_cells.h).
 /// @param point   field space; `normal`: unit, on the side that is looked at
 /// @param lookUp  point whose leaf is asked
 SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
@@ -211,7 +212,8 @@ SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCON
         result.light = unpackSharedExponent(surfaceWord(nearest));
         return result;
     }
-    result.probes = -1;
-    result.light = irradianceAt(point, normal, lookUp, reads);
+    vec4 open = cellLightAt(lookUp, normal, ranked);
+    result.probes = open.w > real(0.0) ? -1 : -2;
+    result.light = vec3(open.x, open.y, open.z);
     return result;
 }

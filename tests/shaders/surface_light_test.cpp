@@ -22,8 +22,8 @@ template <class Light> FieldData litField(const Scene& scene, const std::vector<
     const RayScene rays = std::move(*RayScene::create(scene));
     FieldData field = testing_support::fieldByRays(rays, probes, 96);
     field.info.surfaceSize = kSize;
-    field.surfaceLight.resize(size_t(6) * kSize * kSize * probes.size());
-    field.irradiance.assign(probes.size() * kIrradianceWordsPerProbe, 0u);
+    field.info.cellShift = cellShiftOf(field.info);
+    field.surfaceLight.resize(size_t(6) * kSize * kSize * probes.size() + cellWords(field.info));
     Text text(field, testing_support::defaultQuality());
     for (uint32_t probe = 0; probe < probes.size(); ++probe)
         for (int face = 0; face < 6; ++face)
@@ -110,21 +110,33 @@ TEST(SurfaceLight, DoesNotComeThroughAWallOf1CentimetreAlongTheFloor)
     }
 }
 
-TEST(SurfaceLight, WhatNoProbeKnowsHasTheProbesIrradiance)
+// A cube's six sides by the squares of the normal: McTaggart 2004's ambient cube.
+TEST(SurfaceLight, WhatNoProbeSeesHasTheLightOfTheCellsInTheOpen)
 {
     Scene scene;
     MeshBuilder mesh(scene);
     mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
     FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}, {-0.4f, -0.3f, 0.2f}}, [](vec3) { return 1.0f; });
+    const vec3 open(0.0f, 0.1f, 0.5f); // where something moves
+    EXPECT_EQ(lightOf(field, open, vec3(0, 0, -1)).probes, -2) << "no cell knows yet";
     Text text(field, testing_support::defaultQuality());
-    for (size_t i = 0; i < field.irradiance.size(); i += 2)
+    for (size_t i = field.surfaceLight.size() - cellWords(field.info); i < field.surfaceLight.size(); i += gpu::kCellWords)
     {
-        field.irradiance[i] = text.packRadiance(vec3(7.0f));
-        field.irradiance[i + 1] = text.realToHalf(2.0f);
+        for (uint32_t facing = 0; facing < 6; ++facing) field.surfaceLight[i + facing] = text.packSharedExponent(vec3(float(1 + facing)));
+        field.surfaceLight[i + 6] = 512u | 512u << 10 | 512u << 20 | gpu::kCellKnown; // its middle
     }
-    const auto found = lightOf(field, vec3(0.0f, 0.1f, 0.5f), vec3(0, 0, -1)); // in the open, where something moves
-    EXPECT_EQ(found.probes, -1);
-    EXPECT_NEAR(found.light.g, 7.0f, 0.1f);
+    for (const auto& [normal, light] : {std::pair{vec3(1, 0, 0), 1.0f},
+                                        {vec3(-1, 0, 0), 2.0f},
+                                        {vec3(0, 1, 0), 3.0f},
+                                        {vec3(0, -1, 0), 4.0f},
+                                        {vec3(0, 0, 1), 5.0f},
+                                        {vec3(0, 0, -1), 6.0f},
+                                        {vec3(0.6f, 0.0f, -0.8f), 0.36f * 1.0f + 0.64f * 6.0f}})
+    {
+        const auto found = lightOf(field, open, normal);
+        EXPECT_EQ(found.probes, -1);
+        EXPECT_NEAR(found.light.g, light, 0.01f);
+    }
 }
 
 TEST(SurfaceLight, PointsThatAreNoneAreBlack)

@@ -83,6 +83,7 @@ inline void addSphere(Scene& scene, float radius, int rings, uint32_t material)
 inline ReferenceSettings view(vec3 eye, vec3 target, uint32_t size, uint32_t samples, float fov = 0.01f)
 {
     ReferenceSettings settings;
+    settings.bounces = 2;
     settings.width = settings.height = size;
     settings.samples = samples;
     settings.camera.eye = eye;

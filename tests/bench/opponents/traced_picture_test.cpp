@@ -33,6 +33,7 @@ Scene boxes()
 ImageSet traced(const Scene& scene, uint32_t paths, uint64_t seed)
 {
     ReferenceSettings settings;
+    settings.bounces = 2;
     settings.width = kWidth;
     settings.height = kHeight;
     settings.samples = paths;

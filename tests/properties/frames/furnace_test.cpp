@@ -47,6 +47,7 @@ TEST_F(FurnaceTest, ReflectsWhatThePathTracerSaysWithinOnePercent)
         const auto frame = drawWith(*field, scene, settings);
         ASSERT_TRUE(frame) << frame.error().message;
         ReferenceSettings reference;
+        reference.bounces = 2;
         reference.width = reference.height = kSide;
         reference.samples = 144;
         reference.pixelCentre = true;

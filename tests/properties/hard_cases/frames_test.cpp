@@ -122,6 +122,7 @@ TEST_F(HardFrames, RoughnessExactlyZeroAndOneAgainstThePathTracer)
         const auto frame = drawWith(*field, scene, settings);
         ASSERT_TRUE(frame) << frame.error().message;
         ReferenceSettings reference;
+        reference.bounces = 2;
         reference.width = reference.height = 64;
         reference.samples = 128;
         reference.pixelCentre = true;

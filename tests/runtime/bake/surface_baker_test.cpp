@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -37,11 +38,28 @@ protected:
     {
         double mean = 0.0, worst = 0.0;
     };
+    static std::span<const uint32_t> texelsOf(const FieldData& field)
+    {
+        return std::span(field.surfaceLight).first(field.surfaceLight.size() - cellWords(field.info));
+    }
+    /// Green of all cells that know their light, on a facing.
+    static std::vector<double> cellsOf(const FieldData& field, size_t facing)
+    {
+        Text text(field, {});
+        std::vector<double> values;
+        for (size_t i = texelsOf(field).size(); i < field.surfaceLight.size(); i += gpu::kCellWords)
+            if (field.surfaceLight[i + 6] != 0) values.push_back(text.unpackSharedExponent(field.surfaceLight[i + facing]).g);
+        return values;
+    }
     static Spread spreadOf(const FieldData& field)
     {
         Text text(field, {});
         std::vector<double> values;
-        for (const uint32_t word : field.surfaceLight) values.push_back(text.unpackSharedExponent(word).g);
+        for (const uint32_t word : texelsOf(field)) values.push_back(text.unpackSharedExponent(word).g);
+        return spreadOf(values);
+    }
+    static Spread spreadOf(const std::vector<double>& values)
+    {
         Spread spread;
         for (const double v : values) spread.mean += v / double(values.size());
         for (const double v : values) spread.worst = std::max(spread.worst, std::abs(v / spread.mean - 1.0));
@@ -72,9 +90,17 @@ TEST_F(SurfaceBake, EachBounceInASphereIsTheAlbedosShareOfTheOneBefore)
     for (const uint32_t bounces : {0u, 1u, 2u, 4u, 8u})
     {
         const double sum = first * (1.0 - std::pow(kAlbedo, double(bounces + 1))) / (1.0 - kAlbedo);
-        const Spread found = spreadOf(bake(scene, {vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)}, bounces));
+        const FieldData field = bake(scene, {vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)}, bounces);
+        const Spread found = spreadOf(field);
         EXPECT_NEAR(found.mean, sum, 0.01 * sum) << bounces << " bounces";
         EXPECT_LT(found.worst, 0.06) << bounces << " bounces";
+        if (bounces == 0) continue;
+        // All that a place in the open sees is as bright.
+        const std::vector<double> open = cellsOf(field, bounces % 6);
+        EXPECT_GT(open.size(), 10u);
+        const Spread cells = spreadOf(open);
+        EXPECT_NEAR(cells.mean, sum, 0.01 * sum) << bounces << " bounces";
+        EXPECT_LT(cells.worst, 0.06) << bounces << " bounces";
     }
 }
 
@@ -88,7 +114,7 @@ TEST_F(SurfaceBake, APlateUnderTheSkyGathersTheSky)
     const FieldData field = bake(scene, {vec3(0.0f, 1.0f, 0.0f)}, 2);
     Text text(field, {});
     int found = 0;
-    for (int i = 0; i < int(field.surfaceLight.size()); ++i)
+    for (int i = 0; i < int(texelsOf(field).size()); ++i)
     {
         const int side = int(field.info.surfaceSize), face = i / (side * side);
         const auto point = text.surfacePointAt(0, face, i % side, i / side % side);
@@ -101,6 +127,38 @@ TEST_F(SurfaceBake, APlateUnderTheSkyGathersTheSky)
             EXPECT_EQ(field.surfaceLight[size_t(i)], 0u) << "sky has no surface";
     }
     EXPECT_GT(found, 100);
+    const std::vector<double> up = cellsOf(field, 2);
+    EXPECT_GT(up.size(), 4u);
+    for (const double light : up) EXPECT_NEAR(light, 1.0, 0.002);
+}
+
+// Two rooms with a wall of 4 cm between them, a lamp in one: in the dark one a point beside the wall has no light of the cells beyond it.
+TEST_F(SurfaceBake, CellsKeepTheSidesOfAWallApart)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.7f));
+    mesh.box(vec3(-2.2f, -0.2f, -1.2f), vec3(2.2f, 0.0f, 1.2f), white);
+    mesh.box(vec3(-2.2f, 2.0f, -1.2f), vec3(2.2f, 2.2f, 1.2f), white);
+    mesh.box(vec3(-2.2f, 0.0f, -1.2f), vec3(-2.0f, 2.0f, 1.2f), white);
+    mesh.box(vec3(2.0f, 0.0f, -1.2f), vec3(2.2f, 2.0f, 1.2f), white);
+    mesh.box(vec3(-2.0f, 0.0f, -1.2f), vec3(2.0f, 2.0f, -1.0f), white);
+    mesh.box(vec3(-2.0f, 0.0f, 1.0f), vec3(2.0f, 2.0f, 1.2f), white);
+    mesh.box(vec3(-0.02f, 0.0f, -1.0f), vec3(0.02f, 2.0f, 1.0f), white);
+    mesh.quad({0.8f, 1.9f, -0.3f}, {1.2f, 1.9f, -0.3f}, {1.2f, 1.9f, 0.3f}, {0.8f, 1.9f, 0.3f}, mesh.emitter("lamp", vec3(100.0f)));
+    const FieldData field = bake(scene, {vec3(-1.0f, 1.1f, 0.1f), vec3(1.0f, 0.9f, -0.1f)}, 4);
+    Text text(field, {});
+    const auto lightAt = [&](float x)
+    {
+        const vec3 point = (vec3(x, 1.0f, 0.3f) - field.info.origin) / field.info.scale;
+        int reads = 0;
+        const Text::vec4 found = text.cellLightAt(point, vec3(0, 1, 0), text.rankedProbesAt(point, reads));
+        EXPECT_EQ(found.w, 1.0f) << x;
+        return found.y;
+    };
+    const float bright = lightAt(0.06f);
+    EXPECT_GT(bright, 1.0f);
+    for (const float x : {-0.06f, -0.1f, -0.2f, -0.5f, -1.0f}) EXPECT_LT(lightAt(x), 1e-4f * bright) << x;
 }
 
 // A square emitter over a plane: below its middle the cosine-weighted mean of its radiance is its form factor (Howell, "A Catalog of Radiation Heat

@@ -1,0 +1,66 @@
+// Light of places that no probe sees: a coarse grid of cells, each with the light that falls on six facings at one place in the open. What moves,
+// and what is too thin or too hidden for a map, is lit by it. Shared text, see probe_trace.h; needs surfaceWord(uint) and planeSeen() besides.
+//
+// The cells lie over the octree's box, 2^cellShift of its finest voxels a side, x fastest, after the texels of all probes in the same words:
+// the light on the facings +x, -x, +y, -y, +z, -z, as a texel's, and the place. Light on six axes, blended by the squares of the normal: the
+// ambient cube of McTaggart 2004, "Half-Life 2 / Valve Source Shading".
+
+SCONCE_CONST real kCellPlaces = real(1024.0); // steps of a place across a cell
+
+SCONCE_FN ivec3 lightCells()
+{
+    int more = (1 << field.cellShift) - 1;
+    return ivec3(((field.topCells.x << field.topShift) + more) >> field.cellShift, ((field.topCells.y << field.topShift) + more) >> field.cellShift,
+                 ((field.topCells.z << field.topShift) + more) >> field.cellShift);
+}
+
+/// Index of a cell's first word.
+SCONCE_FN uint cellWords(ivec3 cell)
+{
+    ivec3 count = lightCells();
+    return field.probeCount * 6u * field.surfaceSize * field.surfaceSize +
+           kCellWords * uint(cell.x + count.x * (cell.y + count.y * cell.z));
+}
+
+/// Where in the field a cell's light was gathered.
+SCONCE_FN vec3 cellPlace(ivec3 cell, uint place)
+{
+    vec3 within = vec3(real(place & 1023u), real((place >> 10) & 1023u), real((place >> 20) & 1023u)) + vec3(real(0.5));
+    return vec3(field.boundsLow) + real(field.voxel) * real(1 << field.cellShift) * (vec3(real(cell.x), real(cell.y), real(cell.z)) + within / kCellPlaces);
+}
+
+/// Light at a point from the eight cells about it that the same probe sees: so that a wall keeps its sides apart. Cost: up to 32 reads, and up to 12
+/// of planes.
+/// @param lifted  point in the open before it, whose probes are `ranked`
+/// @return  rgb: mean of the arriving radiance, weighted by the cosine; a: 0 where no cell knows
+SCONCE_FN vec4 cellLightAt(vec3 lifted, vec3 normal, uvec4 ranked)
+{
+    uint eye = ranked.x;
+    for (int k = kRanked - 1; k >= 0; --k)
+        if (!hiddenFromProbe(ranked[k], lifted - vec3(probeHeader(ranked[k]).centre))) eye = ranked[k];
+    vec3 centre = vec3(probeHeader(eye).centre);
+    ivec3 count = lightCells();
+    vec3 at = (lifted - vec3(field.boundsLow)) / (real(field.voxel) * real(1 << field.cellShift)) - vec3(real(0.5));
+    ivec3 low = ivec3(clamp(int(floor(at.x)), 0, count.x - 1), clamp(int(floor(at.y)), 0, count.y - 1), clamp(int(floor(at.z)), 0, count.z - 1));
+    vec3 f = clamp(at - vec3(real(low.x), real(low.y), real(low.z)), vec3(real(0.0)), vec3(real(1.0)));
+    vec3 squares = normal * normal;
+    vec4 sum = vec4(real(0.0));
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        ivec3 to = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+        ivec3 cell = ivec3(min(low.x + to.x, count.x - 1), min(low.y + to.y, count.y - 1), min(low.z + to.z, count.z - 1));
+        uint first = cellWords(cell);
+        uint place = surfaceWord(first + 6u);
+        if ((place & kCellKnown) == 0u) continue;
+        vec3 from = cellPlace(cell, place);
+        if (hiddenFromProbe(eye, from - centre)) continue;
+        // Some of each, so that one cell of eight that knows is enough.
+        real weight = (to.x != 0 ? f.x : real(1.0) - f.x) * (to.y != 0 ? f.y : real(1.0) - f.y) * (to.z != 0 ? f.z : real(1.0) - f.z) + real(1e-3);
+        vec3 light = squares.x * unpackSharedExponent(surfaceWord(first + (normal.x < real(0.0) ? 1u : 0u))) +
+                     squares.y * unpackSharedExponent(surfaceWord(first + (normal.y < real(0.0) ? 3u : 2u))) +
+                     squares.z * unpackSharedExponent(surfaceWord(first + (normal.z < real(0.0) ? 5u : 4u)));
+        sum += weight * vec4(light, real(1.0));
+    }
+    if (!(sum.w > real(0.0))) return sum;
+    return vec4(vec3(sum.x, sum.y, sum.z) / sum.w, real(1.0));
+}
