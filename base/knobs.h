@@ -421,9 +421,9 @@ inline constexpr Knob<std::string_view> diffuse{
     .what =
         "Where diffuse light comes from; irradiance and patches take emitters and sky from shadowed samples, traced has them in its rays, "
         "of which there are as many as --samples; surface has them baked",
-    .buys =
-        "light: read at the surfaces that probes see, without noise; read from a probe's prefiltered irradiance; from 216 patches that it sees, which is right about what is "
-        "near, for about twice the time of diffuse light; or found by cosine-weighted rays (docs/light.md)",
+    .buys = "light: read at the surfaces that probes see, without noise; read from a probe's prefiltered irradiance; from 216 patches that "
+            "it sees, which is right about what is "
+            "near, for about twice the time of diffuse light; or found by cosine-weighted rays (docs/light.md)",
     .readme = true};
 inline constexpr std::string_view kAreaShadows[] = {"maps", "field"};
 inline constexpr Knob<std::string_view> areaShadows{

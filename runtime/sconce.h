@@ -75,10 +75,10 @@ public:
     std::array<uint32_t, 2> constants() const;
     const gpu::LightFieldInfo& info() const;
     uint64_t deviceBytes() const;
-    bool holdsRadiance() const;    // as rays need it
-    bool holdsPrefiltered() const; // as rough reflections need it
+    bool holdsRadiance() const;     // as rays need it
+    bool holdsPrefiltered() const;  // as rough reflections need it
     bool holdsSurfaceLight() const; // diffuse light where surfaces are
-    bool holdsPatches() const;     // as diffuse light by patches needs them
+    bool holdsPatches() const;      // as diffuse light by patches needs them
     /// Names of the effects that its scene called for when it was baked (SceneEffect::name).
     const std::vector<std::string>& effects() const;
     /// What a frame in its scene needs of indirect light, by these effects: what isn't called for costs nothing.
@@ -126,15 +126,15 @@ public:
     /// Record frames in the order in which they are shown, where the effect `temporal` is on. The G-buffer must be visible to compute
     /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
     /// any later stage read these.
-    /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace", "diffuse fill",
-    ///               "glossy fill", "glossy denoise"
+    /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace",
+    ///               "diffuse fill", "glossy fill", "glossy denoise"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; shaders/compose.comp shows
     // how they make a picture. RGBA32F.
-    Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it is read
-                            // from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or sky.
-                            // a, of surface light: SurfaceLight::probes, what it is from
+    Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it
+                            // is read from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or
+                            // sky. a, of surface light: SurfaceLight::probes, what it is from
     Output rough() const;   // rgb radiance reflected to the eye, BRDF included; as the next two
     Output glossy() const;
     Output mirror() const;

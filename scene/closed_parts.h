@@ -15,14 +15,14 @@ std::vector<uint32_t> weld(const std::vector<vec3>& positions);
 /// Which side of a triangle can be seen from outside.
 enum class Outside : int8_t
 {
-    both = 0,   // of a sheet, or of a part that is not closed
-    front = 1,  // the side from which its corners run counter-clockwise
+    both = 0,  // of a sheet, or of a part that is not closed
+    front = 1, // the side from which its corners run counter-clockwise
     back = -1,
 };
 
-/// For each of some triangles: `front` or `back` where it belongs to a closed part, triangles joined by corners each of whose edges is run along
-/// as often one way as the other, in which there is nothing; else `both`: a room is seen from its inside, and so may be all that there is.
-/// Cost: a sort of all edges, and a look at each vertex for each closed part asked about.
+/// For each of some triangles: `front` or `back` where it belongs to a closed part, triangles joined by corners each of whose edges is run
+/// along as often one way as the other, in which there is nothing; else `both`: a room is seen from its inside, and so may be all that
+/// there is. Cost: a sort of all edges, and a look at each vertex for each closed part asked about.
 std::vector<Outside> outsideOf(const Scene& scene, std::span<const uint32_t> triangles);
 
 } // namespace sconce

@@ -59,7 +59,7 @@ void main()
     {
         uint sampled = i & ((1u << kSampleBits) - 1u), seed = 2654435769u * (i >> kSampleBits);
         vec3 direction = normalize(toWorld(tangents, sampleCosine(randomPair(pixel, sampled, kGatherStream, seed))));
-        TraceResult hit = traceRay(point, direction, vec3(0.0));
+        TraceResult hit = traceBothWays(point, direction, vec3(0.0));
         uint link = kLinkNone;
         if (hit.status == kMiss) link = kLinkSky;
         else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, seed).x);

@@ -33,7 +33,7 @@ void main()
         if (dot(direction, surface.normal) > 0.0)
         {
             TraceResult hit;
-            if (!meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit)) hit = traceRay(point, direction, surface.normal);
+            if (!meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit)) hit = traceBothWays(point, direction, surface.normal);
             if (hit.status == kMiss) link = kLinkSky;
             else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, 2654435769u * round_).x);
             nearness += 1.0 / max(hit.t, 1e-6);

@@ -81,12 +81,9 @@ int runBake(const BakeOptions& options, const Context& context)
         json["probes_tight"] = report.tight;
         json["energy"] = report.energy;
         json["peak_device_bytes"] = report.peakDeviceBytes;
-        json["stage_seconds"] = {{"scene", report.sceneSeconds},
-                                 {"probes", report.probeSeconds},
-                                 {"octree", report.octreeSeconds},
-                                 {"gather", report.gatherSeconds},
-                                 {"bounces", report.bounceSeconds},
-                                 {"prefilter", report.prefilterSeconds}};
+        json["stage_seconds"] = {{"scene", report.sceneSeconds},    {"probes", report.probeSeconds},
+                                 {"octree", report.octreeSeconds},  {"gather", report.gatherSeconds},
+                                 {"bounces", report.bounceSeconds}, {"prefilter", report.prefilterSeconds}};
         json["octree_on_device"] = report.octreeOnDevice;
         addCost(json, watch);
         print(json);

@@ -63,8 +63,8 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         options.quality.take("--diffuse", options.diffuse,
                              std::string(frame.effects.surfaceLight    ? kSurface
                                          : frame.effects.tracedDiffuse ? kTraced
-                                         : frame.effects.patches     ? kPatches
-                                                                     : kIrradiance));
+                                         : frame.effects.patches       ? kPatches
+                                                                       : kIrradiance));
         options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
@@ -204,11 +204,13 @@ int runRender(RenderOptions options, const Context& context)
     settings.effects = plan->indirect();
     settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
     settings.effects.temporal = options.temporal;
-    const std::string diffuse = !options.diffuse.empty() ? options.diffuse : std::string(data->surfaceLight.empty() ? kIrradiance : kSurface);
+    const std::string diffuse =
+        !options.diffuse.empty() ? options.diffuse : std::string(data->surfaceLight.empty() ? kIrradiance : kSurface);
     if (diffuse == kSurface && data->surfaceLight.empty())
-        return fail(ErrorCode::badArgument,
-                    fmt::format("Light field '{}' holds no surface light; bake it with --surface-texels above 0, or give another --diffuse.",
-                                options.field));
+        return fail(
+            ErrorCode::badArgument,
+            fmt::format("Light field '{}' holds no surface light; bake it with --surface-texels above 0, or give another --diffuse.",
+                        options.field));
     settings.effects.surfaceLight = diffuse == kSurface;
     settings.effects.tracedDiffuse = diffuse == kTraced;
     settings.effects.patches = diffuse == kPatches;

@@ -30,7 +30,8 @@ Json bytesJson(const FieldBytes& bytes)
             {"irradiance", bytes.irradiance},
             {"index", bytes.index},
             {"prefiltered_radiance", bytes.prefiltered},
-            {"surface_light", bytes.surface}};
+            {"surface_light", bytes.surface},
+            {"surface_light_cells", bytes.cells}};
 }
 
 std::string megabytes(size_t bytes)
@@ -78,8 +79,11 @@ void printField(const FieldData& field, const std::string& file)
                              megabytes(bytes.total()), megabytes(bytes.distance), megabytes(bytes.normals), megabytes(bytes.radiance),
                              megabytes(bytes.prefiltered), megabytes(bytes.irradiance), megabytes(bytes.index))
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
-              << ", voxels of " << field.octree.voxel * info.scale << " m\n"
-              << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
+              << ", voxels of " << field.octree.voxel * info.scale << " m\n";
+    if (info.surfaceSize > 0)
+        std::cout << fmt::format("surface light: {} texels a face's side; {}, {} of it in cells of {} m in the open\n", info.surfaceSize,
+                                 megabytes(bytes.surface), megabytes(bytes.cells), float(1 << info.cellShift) * info.voxel * info.scale);
+    std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;
     std::cout << std::endl;

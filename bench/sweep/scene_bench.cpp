@@ -196,8 +196,9 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     if (!field) return field;
     for (const SceneEffect& effect : checkScene(desc.scene).effects)
         if (effect.called) field->effects.push_back(effect.name);
-    const Json baked = {{"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.gatherSeconds + report.bounceSeconds},
-                        {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
+    const Json baked = {
+        {"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.gatherSeconds + report.bounceSeconds},
+        {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
     // The field before its report: both must be there to be used again, so that a run stopped in between bakes anew.
     if (auto status = saveField(*field, file); !status) return status.error();
     if (auto status = writeText(cached("fields", key, ".json"), baked.dump()); !status) return status.error();

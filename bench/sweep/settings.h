@@ -31,11 +31,11 @@ struct PointSettings
     uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
     uint32_t bounces = knobs::benchBounces.value;
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // of ours; patches are of fields without
-    int octreeVoxels = knobs::octreeVoxels.value; // OctreeSettings::voxels
-    uint32_t lowFactor = knobs::lowFactor.value;  // of an opponent; 0: bestLowFactor
-    float lookUpBias = knobs::lookUpBias.value;   // of a volume of irradiance, metres
-    int distanceBits = knobs::distanceBits.value; // of a texel of ours (bench/race/distance_format.h)
-    Quality quality;                              // of our tracer
+    int octreeVoxels = knobs::octreeVoxels.value;        // OctreeSettings::voxels
+    uint32_t lowFactor = knobs::lowFactor.value;         // of an opponent; 0: bestLowFactor
+    float lookUpBias = knobs::lookUpBias.value;          // of a volume of irradiance, metres
+    int distanceBits = knobs::distanceBits.value;        // of a texel of ours (bench/race/distance_format.h)
+    Quality quality;                                     // of our tracer
     RenderSettings frame;
     uint32_t paths = knobs::tracedPaths.value; // a pixel, of the path tracer
 
@@ -43,7 +43,7 @@ struct PointSettings
     bool pathTraced() const { return method == kPathTracer || filteredPaths(); }
     std::optional<Baseline> opponent() const { return baselineNamed(method); }
     std::optional<Volume> volume() const { return volumeNamed(method); }
-    uint32_t chart() const; // that the method reads
+    uint32_t chart() const;              // that the method reads
     uint32_t bakedSurfaceTexels() const; // 0 for whoever doesn't read surface light
 };
 

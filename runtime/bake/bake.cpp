@@ -53,9 +53,9 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     if (!even) return knob_words::fault(knobs::resolution.name, knobText(settings.resolution), rangeText(knobs::resolution));
     if (!settings.scene.light.areaShadows)
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
-    const std::string fault = firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
-                                          faultOf(knobs::surfaceTexels, settings.surfaceTexels),
-                                          faultOf(knobs::surfaceRays, settings.surfaceRays)});
+    const std::string fault =
+        firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
+                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -214,8 +214,8 @@ Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
     return success();
 }
 
-/// The whole field as it is now, on the device, so that the order of the probes doesn't matter. Without radiance: a bounce reads irradiance and
-/// what weighs it, or surface light, and the device has only that to hold.
+/// The whole field as it is now, on the device, so that the order of the probes doesn't matter. Without radiance: a bounce reads irradiance
+/// and what weighs it, or surface light, and the device has only that to hold.
 Result<LightField> Bake::asItIs(Gpu& gpu)
 {
     FieldData lit;
@@ -244,7 +244,8 @@ Status Bake::reflect(const LightField& lit, ProbeBaker& baker, const std::string
     return success();
 }
 
-/// Bounces by the probes' own irradiance. Their number is a bound: each costs a gather a texel, and one that adds next to nothing is the last.
+/// Bounces by the probes' own irradiance. Their number is a bound: each costs a gather a texel, and one that adds next to nothing is the
+/// last.
 Status Bake::bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent)
 {
     double energy = spent.energy.back();

@@ -25,10 +25,10 @@ struct BakeSettings
     float converged = knobs::converged.value;        // stop earlier, after a bounce that adds less than this share of all light; 0: never
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // texels a side of a cube face of the surface light; 0: none
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
-    DeviceSceneDesc scene;                           // textures and lights
-    std::vector<std::string> effects;                // names of the plan's effects, kept in the file for reports
-    bool radiance = true;                            // keep the maps' radiance, which traced rays need: half of the field
-    bool prefiltered = true;                         // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
+    DeviceSceneDesc scene;                               // textures and lights
+    std::vector<std::string> effects;                    // names of the plan's effects, kept in the file for reports
+    bool radiance = true;                                // keep the maps' radiance, which traced rays need: half of the field
+    bool prefiltered = true;                             // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid;                // set when the probes are a uniform one
     Spirv bounceShader;                           // with bake_bounce.comp's interface; empty: our own

@@ -138,11 +138,11 @@ Status ProbeBaker::createPipelines()
         std::span<const VkDescriptorSetLayout> sets;
     };
     const ShaderConstant areaLight{gpu::kBakeAreaLightId, info.surfaceSize == 0 ? 1u : 0u};
-    for (const Pass& pass : {Pass{surfacePass, bake_surface_comp, sceneAndImages}, Pass{chainPass, bake_chain_comp, {}},
-                             Pass{texelPass, bake_texels_comp, {}},
-                             Pass{octahedralPass, bake_octahedral_comp, imagesOnly}, Pass{lowPass, bake_octahedral_low_comp, {}},
-                             Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
-                             Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
+    for (const Pass& pass :
+         {Pass{surfacePass, bake_surface_comp, sceneAndImages}, Pass{chainPass, bake_chain_comp, {}}, Pass{texelPass, bake_texels_comp, {}},
+          Pass{octahedralPass, bake_octahedral_comp, imagesOnly}, Pass{lowPass, bake_octahedral_low_comp, {}},
+          Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
+          Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
     {
         auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush), std::span(&areaLight, 1));
         if (!made) return made.error();
@@ -347,15 +347,14 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
     return success();
 }
 
-Status ProbeBaker::bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
-                              Spirv bounceShader)
+Status ProbeBaker::bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct,
+                              const ProbeTarget& target, Spirv bounceShader)
 {
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
         const Spirv own = info.surfaceSize > 0 ? Spirv(bake_bounce_surface_comp) : Spirv(bake_bounce_comp);
-        auto made = Pipeline::compute(gpu, bounceShader.empty() ? own : bounceShader, sets, sizeof(gpu::BakePush),
-                                      shaderConstants(field));
+        auto made = Pipeline::compute(gpu, bounceShader.empty() ? own : bounceShader, sets, sizeof(gpu::BakePush), shaderConstants(field));
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }

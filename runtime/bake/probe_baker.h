@@ -18,10 +18,10 @@ struct ProbeTarget
 {
     std::span<uint32_t> distance;
     std::span<uint32_t> radiance;
-    std::span<uint32_t> surface;    // reflectance 5:6:5 | shading normal << 16, a word a radiance texel; 0: sky
-    std::span<uint32_t> emitted;    // R11G11B10F a radiance texel; empty when the scene has no emitters
-    std::span<uint32_t> irradiance; // [kIrradianceSize^2][2]
-    std::span<uint32_t> faces;      // octahedral chart: level 0 words of the cube faces it was resampled from; else empty
+    std::span<uint32_t> surface;         // reflectance 5:6:5 | shading normal << 16, a word a radiance texel; 0: sky
+    std::span<uint32_t> emitted;         // R11G11B10F a radiance texel; empty when the scene has no emitters
+    std::span<uint32_t> irradiance;      // [kIrradianceSize^2][2]
+    std::span<uint32_t> faces;           // octahedral chart: level 0 words of the cube faces it was resampled from; else empty
     std::span<gpu::SurfaceTexel> texels; // [6 surfaceSize^2]; empty without surface light
 };
 
@@ -70,7 +70,7 @@ private:
     Buffer faceWords, faceLight;                // octahedral only: the faces' words, and their radiance, surfaces and emission
     Buffer words, light;                        // of the chart: distance words; radiance, surfaces, emission, then direct radiance
     Buffer cells, irradiance;
-    Buffer texels; // of the surface light; null without
+    Buffer texels;   // of the surface light; null without
     Buffer transfer; // mapped
     SceneDraws draws;
 };

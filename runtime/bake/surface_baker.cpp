@@ -38,11 +38,11 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
         uint64_t bytes;
         const char* what;
     };
-    for (const Need& need : {Need{first, texels.size() * 16, "first light at surfaces"}, Need{light, texels.size() * 16, "light at surfaces"},
-                             Need{sent, texels.size() * 4, "light that surfaces send"},
-                             Need{sentBefore, texels.size() * 4, "light that surfaces sent"},
-                             Need{filtered, words() * 4, "filtered light at surfaces"},
-                             Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
+    for (const Need& need :
+         {Need{first, texels.size() * 16, "first light at surfaces"}, Need{light, texels.size() * 16, "light at surfaces"},
+          Need{sent, texels.size() * 4, "light that surfaces send"}, Need{sentBefore, texels.size() * 4, "light that surfaces sent"},
+          Need{filtered, words() * 4, "filtered light at surfaces"},
+          Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
     {
         auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
         if (!buffer) return buffer.error();
@@ -65,8 +65,7 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
     auto cleared = gpu->submit(
         [&](VkCommandBuffer cmd)
         {
-            for (const Buffer* buffer : {&first, &light, &sentBefore})
-                gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+            for (const Buffer* buffer : {&first, &light, &sentBefore}) gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
         });
     if (!cleared) return cleared;
     return gpu->upload(sent, 0, std::as_bytes(std::span(direct)));

@@ -10,8 +10,8 @@
 namespace sconce
 {
 
-/// Gathers light at the surface points of all probes' texels (shaders/shared/surface_light.h), straight from emitters and sky and bounce by bounce:
-/// rays are traced through the field once, and each bounce reads what was found where they ended. Each call submits and waits.
+/// Gathers light at the surface points of all probes' texels (shaders/shared/surface_light.h), straight from emitters and sky and bounce by
+/// bounce: rays are traced through the field once, and each bounce reads what was found where they ended. Each call submits and waits.
 class SurfaceBaker
 {
 public:
@@ -23,15 +23,15 @@ public:
     };
     /// @param field   with distances, octree and surfaceSize; it is only read
     /// @param texels  of all probes, [probe][6 surfaceSize^2]
-    static Result<SurfaceBaker> create(Gpu& gpu, const DeviceScene& scene, const LightField& field, std::span<const gpu::SurfaceTexel> texels,
-                                       const Desc& desc);
+    static Result<SurfaceBaker> create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
+                                       std::span<const gpu::SurfaceTexel> texels, const Desc& desc);
 
     /// A probe's texels: their light straight from emitters and sky, and where their rays end. All probes before the first bounce.
     Status gather(uint32_t probe);
     /// One bounce at all texels; the first call makes the light without one.
     Status bounce();
-    /// Mean over probes and directions of the radiance, luminance (Rec. 709), that the texels send after the last bounce; before the first, of
-    /// direct light alone.
+    /// Mean over probes and directions of the radiance, luminance (Rec. 709), that the texels send after the last bounce; before the first,
+    /// of direct light alone.
     Result<double> meanSent();
     /// The light as FieldData::surfaceLight, filtered, and with that of the cells, which has as many bounces.
     Status read(std::span<uint32_t> light);
@@ -55,8 +55,8 @@ private:
     Desc desc;
     Pipeline gatherPass, bouncePass, filterPass, cellPass;
     Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
-    std::vector<uint32_t> links;                                   // [probe][ray][texel]
-    bool lit = false;                                              // the light without a bounce is made
+    std::vector<uint32_t> links;                                              // [probe][ray][texel]
+    bool lit = false;                                                         // the light without a bounce is made
 };
 
 } // namespace sconce

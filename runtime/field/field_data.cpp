@@ -74,7 +74,8 @@ int cellShiftOf(const gpu::LightFieldInfo& info)
     constexpr size_t kCellsOfProbe = 512; // 14 KiB
     gpu::LightFieldInfo finer = info;
     finer.surfaceSize = 1;
-    for (finer.cellShift = 1; finer.cellShift < 15 && cellWords(finer) > gpu::kCellWords * kCellsOfProbe * info.probeCount;) ++finer.cellShift;
+    for (finer.cellShift = 1; finer.cellShift < 15 && cellWords(finer) > gpu::kCellWords * kCellsOfProbe * info.probeCount;)
+        ++finer.cellShift;
     return finer.cellShift;
 }
 

@@ -155,8 +155,8 @@ Status LightField::State::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
-    const gpu::FieldBlock values{info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(),
-                                 surface.address()};
+    const gpu::FieldBlock values{
+        info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(), surface.address()};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 

@@ -90,9 +90,8 @@ enum Section : uint32_t
     surface,     // since version 5
     sectionCount
 };
-constexpr const char* kSectionNames[sectionCount] = {"meta",       "info",   "probes",        "distance",    "radiance",
-                                                     "irradiance", "octree", "octree texels", "prefiltered", "patches",
-                                                     "surface light"};
+constexpr const char* kSectionNames[sectionCount] = {"meta",   "info",          "probes",      "distance", "radiance",     "irradiance",
+                                                     "octree", "octree texels", "prefiltered", "patches",  "surface light"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader

@@ -15,7 +15,7 @@ namespace sconce
 /// Which terms and filters of indirect light are made. What is off has no pipeline, no image and no dispatch.
 struct IndirectEffects
 {
-    bool diffuse = true; // diffuse light
+    bool diffuse = true;        // diffuse light
     bool surfaceLight = true;   // diffuse light from the surface light, where the field holds it and the next two don't say otherwise; else
                                 // from prefiltered irradiance
     bool tracedDiffuse = false; // by traced rays, emitters and sky seen by them

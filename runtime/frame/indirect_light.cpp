@@ -137,7 +137,8 @@ Status IndirectLight::State::make()
     if (readsSurfaces())
     {
         if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
-        if (auto s = makePass(surfacePass, surfaceSet, surface_light_comp, {{gpu::kSurfaceDiffuseBinding, &diffuseImage}}, {}); !s) return s;
+        if (auto s = makePass(surfacePass, surfaceSet, surface_light_comp, {{gpu::kSurfaceDiffuseBinding, &diffuseImage}}, {}); !s)
+            return s;
     }
     if (tracesDiffuse())
     {

@@ -22,8 +22,8 @@ struct DeviceSceneDesc
 inline constexpr uint32_t kTracedLightSamples =
     knobs::tracedLightSamples.value; // of the emitters, and of the sky, where rays shadow them: 112 bytes each, and no map
 
-/// What frames with these effects need of a scene: without diffuse light, or where rays or surface light give it, no samples of emitters and sky,
-/// and so no shadow maps of them; with `fieldShadows` more samples, without maps. A bake needs them always.
+/// What frames with these effects need of a scene: without diffuse light, or where rays or surface light give it, no samples of emitters
+/// and sky, and so no shadow maps of them; with `fieldShadows` more samples, without maps. A bake needs them always.
 DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field);
 
 /// A scene on the device: triangles, materials, textures, lights, and shadow maps rendered once. Move-only; destroy it after the GPU has

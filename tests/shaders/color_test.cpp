@@ -100,11 +100,13 @@ TEST(Colour, SharedExponentsComeBackWithinHalfAStepOfTheLargestChannel)
         const uint32_t word = Text::packSharedExponent(c);
         const vec3 back = Text::unpackSharedExponent(word);
         // The largest channel has a mantissa of 256 to 511, or the least exponent.
-        const double largest = std::max({c.x, c.y, c.z}), half = 0.5 * std::max(std::exp2(std::floor(std::log2(largest)) - 8.0), std::exp2(-24.0));
+        const double largest = std::max({c.x, c.y, c.z}),
+                     half = 0.5 * std::max(std::exp2(std::floor(std::log2(largest)) - 8.0), std::exp2(-24.0));
         for (int channel = 0; channel < 3; ++channel)
         {
             EXPECT_EQ(back[channel], float(sharedValueOf(word, channel)));
-            EXPECT_NEAR(back[channel], c[channel], 2.001 * half) << "where the largest rounds up to the next exponent, steps are twice as wide";
+            EXPECT_NEAR(back[channel], c[channel], 2.001 * half)
+                << "where the largest rounds up to the next exponent, steps are twice as wide";
         }
     }
 }

@@ -62,7 +62,8 @@ TEST(SurfaceLight, TexelsLieOnTheWallsThatTheirProbesSee)
         }
 }
 
-// Light that changes linearly over a box's walls: bilinear taps give it exactly, but for the words' steps and the half texels at a face's border.
+// Light that changes linearly over a box's walls: bilinear taps give it exactly, but for the words' steps and the half texels at a face's
+// border.
 TEST(SurfaceLight, ComesBackWhereItIsFromTwoProbes)
 {
     Scene scene;
@@ -90,7 +91,8 @@ TEST(SurfaceLight, ComesBackWhereItIsFromTwoProbes)
     EXPECT_EQ(one, 0) << "in a box every probe sees every point";
 }
 
-// Floor and walls run on in one plane behind a thin wall. What a pixel at its foot projects onto is coplanar with it, near, and of the other room.
+// Floor and walls run on in one plane behind a thin wall. What a pixel at its foot projects onto is coplanar with it, near, and of the
+// other room.
 TEST(SurfaceLight, DoesNotComeThroughAWallOf1CentimetreAlongTheFloor)
 {
     Scene scene;
@@ -98,8 +100,8 @@ TEST(SurfaceLight, DoesNotComeThroughAWallOf1CentimetreAlongTheFloor)
     const uint32_t white = mesh.material("white", vec3(0.5f));
     mesh.box(vec3(-2.0f, 0.0f, -1.0f), vec3(2.0f, 2.0f, 1.0f), white);
     mesh.box(vec3(-0.005f, 0.0f, -1.0f), vec3(0.005f, 2.0f, 1.0f), white);
-    const FieldData field =
-        litField(scene, {{-1.0f, 1.1f, 0.1f}, {-0.6f, 0.6f, -0.3f}, {1.0f, 0.9f, -0.1f}, {0.5f, 1.2f, 0.3f}}, [](vec3 p) { return p.x < 0.0f ? 100.0f : 1.0f; });
+    const FieldData field = litField(scene, {{-1.0f, 1.1f, 0.1f}, {-0.6f, 0.6f, -0.3f}, {1.0f, 0.9f, -0.1f}, {0.5f, 1.2f, 0.3f}},
+                                     [](vec3 p) { return p.x < 0.0f ? 100.0f : 1.0f; });
     std::mt19937 random(6);
     std::uniform_real_distribution<float> along(-0.9f, 0.9f), away(0.006f, 0.1f);
     for (int i = 0; i < 4000; ++i)
@@ -145,7 +147,8 @@ TEST(SurfaceLight, PointsThatAreNoneAreBlack)
     MeshBuilder mesh(scene);
     mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
     const FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}}, [](vec3) { return 1.0f; });
-    for (const auto& [point, normal] : {std::pair{vec3(NAN), vec3(0, 1, 0)}, {vec3(0.0f, -1.0f, 0.0f), vec3(0.0f)}, {vec3(INFINITY), vec3(0, 1, 0)}})
+    for (const auto& [point, normal] :
+         {std::pair{vec3(NAN), vec3(0, 1, 0)}, {vec3(0.0f, -1.0f, 0.0f), vec3(0.0f)}, {vec3(INFINITY), vec3(0, 1, 0)}})
         EXPECT_EQ(lightOf(field, point, normal).light, vec3(0.0f));
     // At a probe itself there is no direction to it; any finite light will do.
     EXPECT_TRUE(std::isfinite(lightOf(field, vec3(0.3f, 0.2f, -0.1f), vec3(0, 1, 0)).light.g));

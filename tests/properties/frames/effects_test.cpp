@@ -133,7 +133,8 @@ TEST_F(EffectsTest, FramesWithoutAreaLightHaveNoShadowMapsOfIt)
     for (int bare = 0; bare < 2; ++bare)
     {
         gpu().releaseStaging(); // the scene's bytes are what the device has more than before
-        const auto device = DeviceScene::create(gpu(), scene, field->info, bare ? sceneForFrames(settings.effects, field->info) : DeviceSceneDesc{});
+        const auto device =
+            DeviceScene::create(gpu(), scene, field->info, bare ? sceneForFrames(settings.effects, field->info) : DeviceSceneDesc{});
         ASSERT_TRUE(device) << device.error().message;
         if (bare)
         {

@@ -77,8 +77,8 @@ Light pointLight(float intensity)
     return light;
 }
 
-// An integrating sphere about a point light: all of it sends albedo I / (pi r^2) after one scattering, and each bounce the albedo's share of the one
-// before. What arrives straight from the light is the host's and is no part of it.
+// An integrating sphere about a point light: all of it sends albedo I / (pi r^2) after one scattering, and each bounce the albedo's share
+// of the one before. What arrives straight from the light is the host's and is no part of it.
 TEST_F(SurfaceBake, EachBounceInASphereIsTheAlbedosShareOfTheOneBefore)
 {
     constexpr float kAlbedo = 0.6f, kRadius = 2.0f, kIntensity = 8.0f;
@@ -161,8 +161,8 @@ TEST_F(SurfaceBake, CellsKeepTheSidesOfAWallApart)
     for (const float x : {-0.06f, -0.1f, -0.2f, -0.5f, -1.0f}) EXPECT_LT(lightAt(x), 1e-4f * bright) << x;
 }
 
-// A square emitter over a plane: below its middle the cosine-weighted mean of its radiance is its form factor (Howell, "A Catalog of Radiation Heat
-// Transfer Configuration Factors", B-4: a point parallel to a rectangle's corner, four times).
+// A square emitter over a plane: below its middle the cosine-weighted mean of its radiance is its form factor (Howell, "A Catalog of
+// Radiation Heat Transfer Configuration Factors", B-4: a point parallel to a rectangle's corner, four times).
 TEST_F(SurfaceBake, BelowALampIsTheLampsFormFactor)
 {
     constexpr double kHalf = 0.5, kAbove = 1.5;

@@ -148,7 +148,8 @@ TEST_F(SceneRendererTest, DiffuseLightAtSurfacesIsThePathTracersWithoutNoise)
     const auto read = drawWith(*field, scene, settingsFor()), exact = drawWith(*surfaces, scene, settingsFor());
     ASSERT_TRUE(read && exact);
     const DiffuseErrors errors = diffuseErrors(*read, *exact, truthOf(scene, 1024, 4));
-    RecordProperty("relMSE: irradiance, surfaces; mean", std::to_string(errors.irradiance) + " " + std::to_string(errors.other) + " " + std::to_string(errors.mean));
+    RecordProperty("relMSE: irradiance, surfaces; mean",
+                   std::to_string(errors.irradiance) + " " + std::to_string(errors.other) + " " + std::to_string(errors.mean));
     EXPECT_LT(errors.other, 0.35 * errors.irradiance);
     EXPECT_NEAR(errors.mean, 1.0, 0.045) << "0.96: what the lamp throws at the ceiling from a centimetre off, as traced light";
     EXPECT_TRUE(std::ranges::none_of(exact->times, [](const auto& scope) { return scope.name == std::string_view("diffuse denoise"); }));
@@ -171,7 +172,8 @@ TEST_F(SceneRendererTest, DiffuseLightAtSurfacesIsWhatTheTextSaysOnTheHost)
     ASSERT_TRUE(frame) << frame.error().message;
     twin::LightFieldTwin<float> text(*field, {});
     const Camera& camera = scene.cameras.front();
-    const vec3 forward = glm::normalize(camera.forward), right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+    const vec3 forward = glm::normalize(camera.forward), right = glm::normalize(glm::cross(forward, camera.up)),
+               up = glm::cross(right, forward);
     const float tangent = std::tan(0.5f * camera.verticalFov);
     size_t compared = 0, other = 0;
     for (uint32_t i = 0; i < kSide * kSide; ++i)
@@ -289,6 +291,42 @@ TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
     for (const vec3& pixel : diffuseOnly->glossyIndirect) EXPECT_EQ(pixel, vec3(0.0f));
     for (size_t i = 0; i < all->beauty.size(); ++i)
         EXPECT_EQ(diffuseOnly->beauty[i], diffuseOnly->direct[i] + diffuseOnly->diffuseIndirect[i]);
+}
+
+// A sun 18 degrees off a wall shades 61 cm of it under a ledge of 20 cm, from the ledge on. The map's texel is 8 mm here: a receiver moved
+// off the wall by one and a half of them was lit for 4 cm under the ledge.
+TEST_F(SceneRendererTest, ALowSunsShadowBeginsAtItsLedge)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.8f));
+    mesh.box({-10, -1.2f, -10}, {10, -1, 10}, white); // makes the map's texels large
+    mesh.box({-2, -1, -0.2f}, {2, 2, 0}, white);
+    mesh.box({-2, 1, 0}, {2, 1.05f, 0.2f}, white);
+    const vec3 down = glm::normalize(vec3(0.0f, -0.95f, -0.31f));
+    scene.lights.push_back(test::light(LightType::directional, vec3(0.0f), down, 1.0f));
+    scene.cameras.push_back({"wall", {0, 0.75f, 2}, {0, 0, -1}, {0, 1, 0}, 0.45f});
+    const auto frame = draw(scene, std::vector<vec3>{{0, 0.8f, 1}}, settingsFor());
+    ASSERT_TRUE(frame) << frame.error().message;
+    const float end = 1.0f - 0.2f * 0.95f / 0.31f, span = 2.0f * std::tan(0.225f) * 2.0f;
+    int shaded = 0, lit = 0;
+    for (uint32_t row = 0; row < kSide; ++row)
+    {
+        const float y = 0.75f + span * (0.5f - (float(row) + 0.5f) / float(kSide));
+        const float light = frame->direct[row * kSide + kSide / 2].g;
+        if (y > end + 0.02f && y < 1.0f - 0.005f)
+        {
+            ++shaded;
+            EXPECT_EQ(light, 0.0f) << y;
+        }
+        else if (y < end - 0.03f)
+        {
+            ++lit;
+            EXPECT_NEAR(light, 0.8f / 3.14159f * -down.z, 0.03f) << y;
+        }
+    }
+    EXPECT_GT(shaded, 20);
+    EXPECT_GT(lit, 5);
 }
 
 // Objects that move are in the G-buffer and not in the light field: they are lit by it and reflect it.
