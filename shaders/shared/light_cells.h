@@ -2,8 +2,9 @@
 // and what is too thin or too hidden for a map, is lit by it. Shared text, see probe_trace.h; needs surfaceWord(uint) and planeSeen() besides.
 //
 // The cells lie over the octree's box, 2^cellShift of its finest voxels a side, x fastest, after the texels of all probes in the same words:
-// the light on the facings +x, -x, +y, -y, +z, -z, as a texel's, and the place. Light on six axes, blended by the squares of the normal: the
-// ambient cube of McTaggart 2004, "Half-Life 2 / Valve Source Shading".
+// the light on the facings +x, -x, +y, -y, +z, -z, as a texel's, and the place. What two opposite facings have in common is blended by the squares of the
+// normal, as all light is in the ambient cube of McTaggart 2004, "Half-Life 2 / Valve Source Shading"; what they differ by is linear in the normal, as
+// irradiance is in the first order of spherical harmonics: by squares alone a ball under a lamp is a third too dark.
 
 SCONCE_CONST real kCellPlaces = real(1024.0); // steps of a place across a cell
 
@@ -29,7 +30,15 @@ SCONCE_FN vec3 cellPlace(ivec3 cell, uint place)
     return vec3(field.boundsLow) + real(field.voxel) * real(1 << field.cellShift) * (vec3(real(cell.x), real(cell.y), real(cell.z)) + within / kCellPlaces);
 }
 
-/// Light at a point from the eight cells about it that the same probe sees: so that a wall keeps its sides apart. Cost: up to 32 reads, and up to 12
+/// Light on a normal along one axis, from its two facings.
+SCONCE_FN vec3 axisLight(uint first, real along)
+{
+    vec3 high = unpackSharedExponent(surfaceWord(first));
+    vec3 low = unpackSharedExponent(surfaceWord(first + 1u));
+    return real(0.5) * (along * along * (high + low) + along * (high - low));
+}
+
+/// Light at a point from the eight cells about it that the same probe sees: so that a wall keeps its sides apart. Cost: up to 56 reads, and up to 12
 /// of planes.
 /// @param lifted  point in the open before it, whose probes are `ranked`
 /// @return  rgb: mean of the arriving radiance, weighted by the cosine; a: 0 where no cell knows
@@ -43,7 +52,6 @@ SCONCE_FN vec4 cellLightAt(vec3 lifted, vec3 normal, uvec4 ranked)
     vec3 at = (lifted - vec3(field.boundsLow)) / (real(field.voxel) * real(1 << field.cellShift)) - vec3(real(0.5));
     ivec3 low = ivec3(clamp(int(floor(at.x)), 0, count.x - 1), clamp(int(floor(at.y)), 0, count.y - 1), clamp(int(floor(at.z)), 0, count.z - 1));
     vec3 f = clamp(at - vec3(real(low.x), real(low.y), real(low.z)), vec3(real(0.0)), vec3(real(1.0)));
-    vec3 squares = normal * normal;
     vec4 sum = vec4(real(0.0));
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -56,10 +64,8 @@ SCONCE_FN vec4 cellLightAt(vec3 lifted, vec3 normal, uvec4 ranked)
         if (hiddenFromProbe(eye, from - centre)) continue;
         // Some of each, so that one cell of eight that knows is enough.
         real weight = (to.x != 0 ? f.x : real(1.0) - f.x) * (to.y != 0 ? f.y : real(1.0) - f.y) * (to.z != 0 ? f.z : real(1.0) - f.z) + real(1e-3);
-        vec3 light = squares.x * unpackSharedExponent(surfaceWord(first + (normal.x < real(0.0) ? 1u : 0u))) +
-                     squares.y * unpackSharedExponent(surfaceWord(first + (normal.y < real(0.0) ? 3u : 2u))) +
-                     squares.z * unpackSharedExponent(surfaceWord(first + (normal.z < real(0.0) ? 5u : 4u)));
-        sum += weight * vec4(light, real(1.0));
+        vec3 light = axisLight(first, normal.x) + axisLight(first + 2u, normal.y) + axisLight(first + 4u, normal.z);
+        sum += weight * vec4(max(light, vec3(real(0.0))), real(1.0));
     }
     if (!(sum.w > real(0.0))) return sum;
     return vec4(vec3(sum.x, sum.y, sum.z) / sum.w, real(1.0));

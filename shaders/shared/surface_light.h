@@ -88,6 +88,10 @@ SCONCE_FN real surfaceDensity(uint probe, vec3 point, vec3 normal)
     return cosine > kSurfaceGrazing ? cosine / d2 : real(0.0);
 }
 
+/// Share that a normal bent off its surface, by a texture say, gets of light that comes evenly from above the surface: what a hemisphere cut off by a
+/// plane at that angle sees. From which side more of it comes isn't known.
+SCONCE_FN real shareAbove(vec3 normal, vec3 surface) { return real(0.5) + real(0.5) * max(dot(normal, surface), real(0.0)); }
+
 /// Sum of the four taps about a point that lie on its surface, and of their weights, bilinear. Cost: 8 reads.
 /// @param point  relative to the probe's centre
 SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
@@ -109,8 +113,10 @@ SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
         int x = x0 + (tap & 1);
         int y = y0 + (tap >> 1);
         real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
-        if (!isSameSurface(point, normal, surfacePointAt(probe, face, x, y), kSurfaceBend)) continue;
-        sum += weight * vec4(unpackSharedExponent(surfaceWord(surfaceIndex(probe, face, x, y))), real(1.0));
+        SurfacePoint texel = surfacePointAt(probe, face, x, y);
+        if (!isSameSurface(point, normal, texel, kSurfaceBend)) continue;
+        vec3 light = unpackSharedExponent(surfaceWord(surfaceIndex(probe, face, x, y)));
+        sum += weight * vec4(light * shareAbove(normal, texel.normal), real(1.0));
     }
     return sum;
 }
@@ -161,7 +167,7 @@ SCONCE_FN int largestOf(vec4 v)
 }
 
 /// Light at a surface point from what its probes see of it: of a leaf's probes the two that see most of it, and of their texels those of the same
-/// surface. Cost: about 25 reads; up to 50 more where no texel shows the point, and up to 44 where nothing
+/// surface. Cost: about 25 reads; up to 50 more where no texel shows the point, and up to 68 where nothing
 /// near it does (light_cells.h).
 /// @param point   field space; `normal`: unit, on the side that is looked at
 /// @param lookUp  point whose leaf is asked

@@ -112,7 +112,7 @@ TEST(SurfaceLight, DoesNotComeThroughAWallOf1CentimetreAlongTheFloor)
     }
 }
 
-// A cube's six sides by the squares of the normal: McTaggart 2004's ambient cube.
+// What opposite facings share by the squares of the normal, what they differ by in proportion to it.
 TEST(SurfaceLight, WhatNoProbeSeesHasTheLightOfTheCellsInTheOpen)
 {
     Scene scene;
@@ -133,7 +133,7 @@ TEST(SurfaceLight, WhatNoProbeSeesHasTheLightOfTheCellsInTheOpen)
                                         {vec3(0, -1, 0), 4.0f},
                                         {vec3(0, 0, 1), 5.0f},
                                         {vec3(0, 0, -1), 6.0f},
-                                        {vec3(0.6f, 0.0f, -0.8f), 0.36f * 1.0f + 0.64f * 6.0f}})
+                                        {vec3(0.6f, 0.0f, -0.8f), 0.36f * 1.5f + 0.64f * 5.5f - 0.6f * 0.5f + 0.8f * 0.5f}})
     {
         const auto found = lightOf(field, open, normal);
         EXPECT_EQ(found.probes, -1);
