@@ -28,7 +28,8 @@ void main()
     vec3 own = unpackNormal8(push.surface.word[firstTexel + middle.y * push.size + middle.x] >> 16);
     vec3 albedo = vec3(0.0), normal = vec3(0.0), sent = vec3(0.0);
     float count = 0.0;
-    uvec2 low = uvec2(vec2(at.xy) * finer), high = max(uvec2(vec2(at.xy + 1u) * finer), low + 1u);
+    // Where the sides don't divide each other the middle may lie past the rounded end.
+    uvec2 low = min(uvec2(vec2(at.xy) * finer), middle), high = max(uvec2(vec2(at.xy + 1u) * finer), middle + 1u);
     for (uint y = low.y; y < high.y; ++y)
         for (uint x = low.x; x < high.x; ++x)
         {

@@ -38,7 +38,7 @@ LightSample unshadowedLight(uint kind, uint i, vec3 p)
 }
 
 const float kSteepest = 0.05; // cosine to the light below which a plane counts as no steeper
-const float kPlaneSlack = 0.1; // texels along a plane that its depth may be off by
+const float kPlaneSlack = 0.1; // texels, along a plane and towards the light, that its depth may be off by
 
 /// Of a directional light: each of the map's four texels about the point is compared with the depth that the receiver's own plane has there
 /// (receiver plane depth bias, Isidoro 2006, "Shadow Mapping: GPU-based Tips and Techniques"). A receiver that is moved off its plane instead is
@@ -51,7 +51,7 @@ float sunVisibility(GpuLight light, vec3 p, vec3 normal)
     float deep = length(depth), facing = max(dot(depth, normal) / deep, kSteepest);
     vec2 slope = -vec2(dot(x, normal) / dot(x, x), dot(y, normal) / dot(y, y)) * (deep / facing); // depth over map
     vec2 size = vec2(textureSize(sconceSunShadows, 0).xy);
-    float slack = 1e-6 + kPlaneSlack * dot(abs(slope), 1.0 / size);
+    float slack = 1e-6 + kPlaneSlack * (dot(abs(slope), 1.0 / size) + deep * light.shadowTexel);
     vec2 low = floor(at.xy * size - 0.5), f = at.xy * size - 0.5 - low;
     float lit[4];
     for (int tap = 0; tap < 4; ++tap)

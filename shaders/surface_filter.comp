@@ -20,7 +20,7 @@ void main()
         return;
     }
     SurfacePoint own = surfacePointAt(push.probe, int(texel.z), int(texel.x), int(texel.y));
-    float reach = max(kReachOfDistance * push.first.value[index].w, kLeastReach * own.width);
+    float reach = max(kReachOfDistance * push.first.value[index].w, kLeastReach * own.width); // what isn't known is filled from next to it
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int dy = -2; dy <= 2; ++dy)
@@ -29,11 +29,12 @@ void main()
             ivec2 at = ivec2(texel.xy) + ivec2(dx, dy);
             if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(int(field.surfaceSize))))) continue;
             SurfacePoint other = surfacePointAt(push.probe, int(texel.z), at.x, at.y);
-            if (!isSameSurface(own.at, own.normal, other, kSurfaceBend)) continue;
+            if (push.first.value[surfaceIndex(push.probe, int(texel.z), at.x, at.y)].w == kNotKnown || !isSameSurface(own.at, own.normal, other, kSurfaceBend))
+                continue;
             vec3 to = other.at - own.at;
             float weight = exp(-0.5 * dot(to, to) / (reach * reach));
             sum += weight * push.light.value[surfaceIndex(push.probe, int(texel.z), at.x, at.y)].xyz;
             weights += weight;
         }
-    push.sent.word[index] = packSharedExponent(sum / weights);
+    push.sent.word[index] = weights > 0.0 ? max(packSharedExponent(sum / weights), kBlackWord) : 0u;
 }

@@ -12,6 +12,9 @@
 // sampling, Talbot et al. 2005), systematically along the list.
 // Dispatch: ceil(surfaceSize/8) twice x 6.
 
+// Share of the rays that may end within their first texels: where more do, a map this coarse doesn't tell a texel from its surroundings.
+const float kMostNearby = 0.75;
+
 void main()
 {
     uvec3 texel;
@@ -24,7 +27,7 @@ void main()
     uvec2 pixel = texel.xy + uvec2(field.surfaceSize * texel.z, 0u);
     TangentFrame tangents = tangentFrame(normal);
     vec3 sky = vec3(0.0);
-    float known = 0.0, nearness = 0.0;
+    float known = 0.0, asked = 0.0, nearby = 0.0, nearness = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint sampled = i & ((1u << kSampleBits) - 1u), round_ = i >> kSampleBits;
@@ -32,8 +35,10 @@ void main()
         uint link = kLinkNone;
         if (dot(direction, surface.normal) > 0.0)
         {
+            asked += 1.0;
             TraceResult hit;
-            if (!meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit)) hit = traceBothWays(point, direction, surface.normal);
+            if (meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit)) nearby += 1.0;
+            else hit = traceBothWays(point, direction, surface.normal);
             if (hit.status == kMiss) link = kLinkSky;
             else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, 2654435769u * round_).x);
             nearness += 1.0 / max(hit.t, 1e-6);
@@ -44,5 +49,5 @@ void main()
     }
     vec3 light = sky / max(known, 1.0);
     if (lightsHeader.emitterCount > 0u) light += emittersAt(point, normal, surface.normal, pixel);
-    push.first.value[index] = vec4(light, float(push.rays) / max(nearness, 1e-6));
+    push.first.value[index] = vec4(light, known < kLeastKnown * asked || nearby > kMostNearby * asked ? kNotKnown : float(push.rays) / max(nearness, 1e-6));
 }

@@ -3,6 +3,7 @@
 #include "lights.glsl"
 #include "shared/sample_pair.h"
 
+const float kLeastKnown = 0.5; // share of the rays whose end must be known
 const uint kGatherStream = 6u, kShadowStream = 7u, kLinkStream = 8u;
 
 /// A texel that shows where a ray ended, drawn among the four about it by their weights; else the nearest of the same surface; else none.

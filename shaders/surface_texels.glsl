@@ -14,4 +14,5 @@ bool findTexel(out uvec3 texel, out uint ofProbe, out uint index)
     index = push.probe * 6u * side * side + ofProbe;
     return texel.x < side && texel.y < side && (push.texels.value[index].normal & kSurfaceKnown) != 0u;
 }
+const float kNotKnown = -1.0;  // in place of the rays' length: too few are
 uint texelsOfProbe() { return 6u * field.surfaceSize * field.surfaceSize; }

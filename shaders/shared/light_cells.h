@@ -6,6 +6,7 @@
 // normal, as all light is in the ambient cube of McTaggart 2004, "Half-Life 2 / Valve Source Shading"; what they differ by is linear in the normal, as
 // irradiance is in the first order of spherical harmonics: by squares alone a ball under a lamp is a third too dark.
 
+SCONCE_CONST real kLeastOfNormal = real(0.5); // share of a normal, by its squares, whose light a cell must know
 SCONCE_CONST real kCellPlaces = real(1024.0); // steps of a place across a cell
 
 SCONCE_FN ivec3 lightCells()
@@ -30,12 +31,16 @@ SCONCE_FN vec3 cellPlace(ivec3 cell, uint place)
     return vec3(field.boundsLow) + real(field.voxel) * real(1 << field.cellShift) * (vec3(real(cell.x), real(cell.y), real(cell.z)) + within / kCellPlaces);
 }
 
-/// Light on a normal along one axis, from its two facings.
-SCONCE_FN vec3 axisLight(uint first, real along)
+/// Light on a normal along one axis, from its two facings, of which one may be enough: rgb, and whether it is known.
+SCONCE_FN vec4 axisLight(uint first, real along)
 {
-    vec3 high = unpackSharedExponent(surfaceWord(first));
-    vec3 low = unpackSharedExponent(surfaceWord(first + 1u));
-    return real(0.5) * (along * along * (high + low) + along * (high - low));
+    uint plus = surfaceWord(first);
+    uint minus = surfaceWord(first + 1u);
+    uint faced = along < real(0.0) ? minus : plus;
+    if (faced == 0u) return vec4(real(0.0));
+    vec3 high = unpackSharedExponent(plus == 0u ? minus : plus);
+    vec3 low = unpackSharedExponent(minus == 0u ? plus : minus);
+    return vec4(real(0.5) * (along * along * (high + low) + along * (high - low)), real(1.0));
 }
 
 /// Light at a point from the eight cells about it that the same probe sees: so that a wall keeps its sides apart. Cost: up to 56 reads, and up to 12
@@ -64,8 +69,14 @@ SCONCE_FN vec4 cellLightAt(vec3 lifted, vec3 normal, uvec4 ranked)
         if (hiddenFromProbe(eye, from - centre)) continue;
         // Some of each, so that one cell of eight that knows is enough.
         real weight = (to.x != 0 ? f.x : real(1.0) - f.x) * (to.y != 0 ? f.y : real(1.0) - f.y) * (to.z != 0 ? f.z : real(1.0) - f.z) + real(1e-3);
-        vec3 light = axisLight(first, normal.x) + axisLight(first + 2u, normal.y) + axisLight(first + 4u, normal.z);
-        sum += weight * vec4(max(light, vec3(real(0.0))), real(1.0));
+        vec4 x = axisLight(first, normal.x);
+        vec4 y = axisLight(first + 2u, normal.y);
+        vec4 z = axisLight(first + 4u, normal.z);
+        // What is known of the normal stands for the rest of it.
+        real known = x.w * normal.x * normal.x + y.w * normal.y * normal.y + z.w * normal.z * normal.z;
+        if (known < kLeastOfNormal) continue;
+        vec3 light = vec3(x.x, x.y, x.z) + vec3(y.x, y.y, y.z) + vec3(z.x, z.y, z.z);
+        sum += weight * vec4(max(light, vec3(real(0.0))) / known, real(1.0));
     }
     if (!(sum.w > real(0.0))) return sum;
     return vec4(vec3(sum.x, sum.y, sum.z) / sum.w, real(1.0));

@@ -6,7 +6,7 @@
 // distance texel that holds its centre: one that the probe sees. (Where the centre's own direction meets that texel's plane may lie beyond an edge,
 // and so behind a thin wall.) The value is the mean of the radiance that arrives there, weighted
 // by the cosine (irradiance / pi), of emitters, sky and all that surfaces scatter; what a host's point, spot and directional lights give
-// directly is left out, since it is the host's to draw. RGB9E5.
+// directly is left out, since it is the host's to draw. RGB9E5; 0: it is sky, or its light is not known.
 
 // A texel lights a point that lies on its surface: within the chord of a curve as bent as the two normals are apart, and some slack.
 SCONCE_CONST real kSurfaceSlack = real(0.05);  // of the distance to the texel's point, and of its width
@@ -18,6 +18,7 @@ SCONCE_CONST int kNearestReach = 2;            // texels to either side that the
 SCONCE_CONST real kNearestBend = real(0.5);
 SCONCE_CONST real kNearestWidths = real(3.0);
 SCONCE_CONST uint kNoTexel = 0xffffffffu;
+SCONCE_CONST uint kBlackWord = 1u; // known, and next to none
 
 struct SurfacePoint
 {
@@ -115,7 +116,9 @@ SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
         real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
         SurfacePoint texel = surfacePointAt(probe, face, x, y);
         if (!isSameSurface(point, normal, texel, kSurfaceBend)) continue;
-        vec3 light = unpackSharedExponent(surfaceWord(surfaceIndex(probe, face, x, y)));
+        uint word = surfaceWord(surfaceIndex(probe, face, x, y));
+        if (word == 0u) continue;
+        vec3 light = unpackSharedExponent(word);
         sum += weight * vec4(light * shareAbove(normal, texel.normal), real(1.0));
     }
     return sum;
@@ -155,7 +158,7 @@ SCONCE_FN uint nearestSurfaceTexel(uint probe, vec3 point, vec3 normal)
 struct SurfaceLight
 {
     vec3 light; // mean of the arriving radiance, weighted by the cosine
-    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: the cells in the open; -2: nothing knows, so it is black
+    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: the cells in the open; -2: the probes' irradiance, which lacks emitters and sky
 };
 
 /// The first component that is largest; -1 when none is above 0.
@@ -213,13 +216,18 @@ SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCON
     if (seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seeing.x, point - vec3(probeHeader(seeing.x).centre), normal);
     if (nearest == kNoTexel && seeing.y != kNoProbe)
         nearest = nearestSurfaceTexel(seeing.y, point - vec3(probeHeader(seeing.y).centre), normal);
-    if (nearest != kNoTexel)
+    uint word = 0u;
+    if (nearest != kNoTexel) word = surfaceWord(nearest);
+    if (word != 0u)
     {
-        result.light = unpackSharedExponent(surfaceWord(nearest));
+        result.light = unpackSharedExponent(word);
         return result;
     }
     vec4 open = cellLightAt(lookUp, normal, ranked);
-    result.probes = open.w > real(0.0) ? -1 : -2;
+    result.probes = -1;
     result.light = vec3(open.x, open.y, open.z);
+    if (open.w > real(0.0)) return result;
+    result.probes = -2;
+    result.light = irradianceAt(point, normal, lookUp, reads);
     return result;
 }

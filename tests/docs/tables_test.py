@@ -65,8 +65,8 @@ class Tables(unittest.TestCase):
         self.expect_fault(f"docs/accuracy.md:{line}: table sponza_rays.json main", "84.88 / 90.72", "the file gives", "94.88 / 90.72")
 
     def test_row_taken_from_a_table(self):
-        line = self.change("docs/light.md", r"\| 256 \| maps \|.*\n", "")
-        self.expect_fault(f"docs/light.md:{line}: table emitters.json main")
+        line = self.change("docs/light.md", r"\| hall, 24 \|.*\n", "")
+        self.expect_fault(f"docs/light.md:{line}: table surface_light.json main")
 
     def test_number_in_prose_that_contradicts_its_file(self):
         line = self.change("docs/accuracy.md", r"(<!--=maps\.wrong_to-->)[\d.]+", r"\g<1>0.09")

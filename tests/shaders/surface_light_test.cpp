@@ -24,6 +24,7 @@ template <class Light> FieldData litField(const Scene& scene, const std::vector<
     field.info.surfaceSize = kSize;
     field.info.cellShift = cellShiftOf(field.info);
     field.surfaceLight.resize(size_t(6) * kSize * kSize * probes.size() + cellWords(field.info));
+    field.irradiance.assign(probes.size() * kIrradianceWordsPerProbe, 0u);
     Text text(field, testing_support::defaultQuality());
     for (uint32_t probe = 0; probe < probes.size(); ++probe)
         for (int face = 0; face < 6; ++face)
@@ -120,8 +121,15 @@ TEST(SurfaceLight, WhatNoProbeSeesHasTheLightOfTheCellsInTheOpen)
     mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("wall", vec3(0.5f)));
     FieldData field = litField(scene, {{0.3f, 0.2f, -0.1f}, {-0.4f, -0.3f, 0.2f}}, [](vec3) { return 1.0f; });
     const vec3 open(0.0f, 0.1f, 0.5f); // where something moves
-    EXPECT_EQ(lightOf(field, open, vec3(0, 0, -1)).probes, -2) << "no cell knows yet";
     Text text(field, testing_support::defaultQuality());
+    for (size_t i = 0; i < field.irradiance.size(); i += 2)
+    {
+        field.irradiance[i] = text.packRadiance(vec3(7.0f));
+        field.irradiance[i + 1] = text.realToHalf(2.0f);
+    }
+    const auto dark = lightOf(field, open, vec3(0, 0, -1));
+    EXPECT_EQ(dark.probes, -2) << "no cell knows yet";
+    EXPECT_NEAR(dark.light.g, 7.0f, 0.1f);
     for (size_t i = field.surfaceLight.size() - cellWords(field.info); i < field.surfaceLight.size(); i += gpu::kCellWords)
     {
         for (uint32_t facing = 0; facing < 6; ++facing) field.surfaceLight[i + facing] = text.packSharedExponent(vec3(float(1 + facing)));

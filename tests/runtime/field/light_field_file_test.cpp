@@ -70,12 +70,18 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
     field.irradiance.resize(size_t(probes) * gpu::kIrradianceSize * gpu::kIrradianceSize * 2);
     field.prefiltered.resize(size_t(probes) * gpu::kPrefilteredWords);
     field.patches.resize(size_t(probes) * 2 * gpu::kPatches);
-    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches})
-        for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
     field.octree.boundsHigh = {1.0f, 2.0f, 3.0f};
     field.info.voxel = field.octree.voxel = 0.125f;
     field.info.topCells = field.octree.topCells = {2, 2, 2};
     field.info.topShift = field.octree.topShift = 3;
+    if (chart == gpu::kChartCube)
+    {
+        field.info.surfaceSize = 4;
+        field.info.cellShift = 3;
+        field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 + cellWords(field.info));
+    }
+    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches, &field.surfaceLight})
+        for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
     field.info.bricks = field.octree.bricks = {2, 1, 1};
     field.octree.leaves = 15;
     field.octree.nodes = 1;
@@ -98,6 +104,7 @@ void expectSame(const FieldData& a, const FieldData& b)
     EXPECT_EQ(a.irradiance, b.irradiance);
     EXPECT_EQ(a.prefiltered, b.prefiltered);
     EXPECT_EQ(a.patches, b.patches);
+    EXPECT_EQ(a.surfaceLight, b.surfaceLight);
     EXPECT_EQ(a.octree.texels, b.octree.texels);
     EXPECT_EQ(a.octree.boundsHigh, b.octree.boundsHigh);
     EXPECT_EQ(a.octree.voxel, b.octree.voxel);
