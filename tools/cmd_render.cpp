@@ -61,10 +61,10 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
         options.quality.take("--temporal", options.temporal, frame.effects.temporal);
         options.quality.take("--diffuse", options.diffuse,
-                             std::string(frame.effects.surfaceLight    ? kSurface
-                                         : frame.effects.tracedDiffuse ? kTraced
-                                         : frame.effects.patches       ? kPatches
-                                                                       : kIrradiance));
+                             std::string(frame.effects.tracedDiffuse  ? kTraced
+                                         : frame.effects.patches      ? kPatches
+                                         : frame.effects.surfaceLight ? kSurface
+                                                                      : kIrradiance));
         options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);

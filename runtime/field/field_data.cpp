@@ -8,6 +8,13 @@
 namespace sconce
 {
 
+namespace
+{
+
+constexpr size_t kCellsOfProbe = 512; // at most; 14 KiB
+
+} // namespace
+
 FieldBytes bytesByPart(const FieldData& field)
 {
     FieldBytes bytes;
@@ -60,7 +67,8 @@ size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels
     const size_t words =
         size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
     const size_t patches = chart == gpu::kChartCube && surface == 0 ? size_t(2) * gpu::kPatches : 0;
-    return (words + patches + size_t(6) * surface * surface) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+    const size_t cells = surface > 0 ? gpu::kCellWords * kCellsOfProbe : 0;
+    return (words + patches + size_t(6) * surface * surface + cells) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
 }
 
 glm::ivec3 lightCells(const gpu::LightFieldInfo& info)
@@ -71,7 +79,6 @@ glm::ivec3 lightCells(const gpu::LightFieldInfo& info)
 
 int cellShiftOf(const gpu::LightFieldInfo& info)
 {
-    constexpr size_t kCellsOfProbe = 512; // 14 KiB
     gpu::LightFieldInfo finer = info;
     finer.surfaceSize = 1;
     for (finer.cellShift = 1; finer.cellShift < 15 && cellWords(finer) > gpu::kCellWords * kCellsOfProbe * info.probeCount;)

@@ -59,7 +59,7 @@ inline constexpr uint32_t kIrradianceWordsPerProbe = 2 * gpu::kIrradianceSize * 
 /// Texels a side of a chart's map where an octahedral one has `resolution`: cube faces have half of it.
 uint32_t chartSize(uint32_t chart, uint32_t resolution);
 
-/// Bytes that every further probe adds to a light field, index apart: what a budget of memory is divided by.
+/// Bytes that every further probe adds to a light field at most, index apart: what a budget of memory is divided by.
 /// @param surfaceTexels  BakeSettings::surfaceTexels
 size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value);
 

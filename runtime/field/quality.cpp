@@ -11,14 +11,14 @@ namespace
 
 // The tracer's own knobs stay at their defaults in every level: fewer ranked probes, hand-offs or a narrower hit rule cost rays and save
 // nothing that could be measured. A bounce costs the bake alone: all have all.
-// Reflections: where rays begin to pay moves with what a frame may cost (docs/light.md). Diffuse rays: with 8 a pixel they are nearer
-// to the truth in every scene measured, with 2 in all but one, whose lamps are small.
+// Reflections: where rays begin to pay moves with what a frame may cost (docs/light.md). Diffuse light is read at surfaces: nearer to the
+// truth than by rays.
 constexpr QualityLevel kLevels[] = {
     {"draft", 128, knobs::bounces.value, {}, 1, 4, 2, true, 0.2f, false, 0.68f, 0.32f, 1.11f},
     {"low", 128, knobs::bounces.value, {}, 1, 2, 2, true, 0.2f, false, 0.71f, 0.32f, 1.06f},
     {"medium", 256, knobs::bounces.value, {}, 1, 1, 8, true, knobs::raysBelow.value, false, 1.00f, 1.00f, 1.00f},
-    {"high", 416, knobs::bounces.value, {}, 2, 1, 32, true, 0.6f, true, 1.65f, 2.48f, 0.96f},
-    {"reference", 512, knobs::bounces.value, {}, 8, 1, 32, true, 2.0f, true, 5.04f, 3.71f, 0.82f},
+    {"high", 416, knobs::bounces.value, {}, 2, 1, 32, true, 0.6f, false, 1.65f, 2.48f, 0.96f},
+    {"reference", 512, knobs::bounces.value, {}, 8, 1, 32, true, 2.0f, false, 5.04f, 3.71f, 0.82f},
 };
 
 constexpr bool inRange(const QualityLevel& level)

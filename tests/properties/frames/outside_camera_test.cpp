@@ -35,14 +35,14 @@ TEST_F(OutsideCamera, SeesOpenGroundInTheLightOfTheTruth)
     ASSERT_TRUE(probes) << probes.error().message;
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : probes->probes) positions.push_back(probe.position);
-    const auto field = bakeField(scene, positions);
+    const auto field = bakeField(scene, positions, 128, 2, 52);
     ASSERT_TRUE(field) << field.error().message;
     const auto frame = drawWith(*field, scene, settingsOf(96));
     ASSERT_TRUE(frame) << frame.error().message;
 
     ReferenceSettings reference;
     reference.width = reference.height = 96;
-    reference.samples = 64;
+    reference.samples = 128;
     reference.bounces = 2;
     reference.pixelCentre = reference.parts = true;
     reference.camera = camera;

@@ -197,16 +197,15 @@ TEST_F(SurfaceBake, AGlobeOfACentimetreIsNoBrighterThanItsOutside)
     EXPECT_NEAR(arriving, 1000.0 * kRadius * kRadius, 0.03 * 1000.0 * kRadius * kRadius); // a disc of its radius, 1 m off
 }
 
-// Steps as high as two texels, seen from above: 52 texels a side don't divide faces of 64, and a texel whose finer ones left out the one that it stands
-// for had no normal and no light.
+// Steps as high as two texels, seen from above: 52 texels a side don't divide faces of 64, and a texel whose finer ones left out the one
+// that it stands for had no normal and no light.
 TEST_F(SurfaceBake, RisersOfStepsUnderTheSkyAreNotBlack)
 {
     Scene scene;
     scene.sky = vec3(1.0f);
     MeshBuilder mesh(scene);
     const uint32_t grey = mesh.material("grey", vec3(0.5f));
-    for (int step = 0; step < 5; ++step)
-        mesh.box({-4.0f, -0.5f, -4.0f}, {4.0f, 0.22f * float(step), 2.0f - 0.35f * float(step)}, grey);
+    for (int step = 0; step < 5; ++step) mesh.box({-4.0f, -0.5f, -4.0f}, {4.0f, 0.22f * float(step), 2.0f - 0.35f * float(step)}, grey);
     mesh.box({-6.0f, -0.7f, -6.0f}, {6.0f, -0.5f, 6.0f}, grey);
     const FieldData field = bake(scene, {vec3(0.4f, 3.0f, 2.7f)}, 1, 52);
     Text text(field, {});

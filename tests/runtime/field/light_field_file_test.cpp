@@ -181,7 +181,7 @@ TEST_F(LightFieldFile, RoundTripOfAnEmptyField)
     FieldData field = smallField(gpu::kChartCube, 8, 1);
     field.info.probeCount = 0;
     field.probes.clear(), field.distance.clear(), field.radiance.clear(), field.irradiance.clear(), field.prefiltered.clear(),
-        field.patches.clear(), field.octree.texels.clear();
+        field.patches.clear(), field.surfaceLight.clear(), field.octree.texels.clear();
     field.octree.bricks = {0, 0, 0};
     field.effects.clear();
     ASSERT_TRUE(saveField(field, file));
