@@ -69,5 +69,5 @@ void main()
     }
     vec3 light = sum / max(known, 1.0);
     if (lightsHeader.emitterCount > 0u) light += emittersAt(point, axis, axis, pixel);
-    push.sent.word[first + facing] = known < kLeastKnown * float(push.rays) ? 0u : max(packSharedExponent(light), kBlackWord);
+    push.sent.word[first + facing] = known < kLeastKnown * float(push.rays) ? 0u : packKnownLight(light);
 }

@@ -36,5 +36,5 @@ void main()
             sum += weight * push.light.value[surfaceIndex(push.probe, int(texel.z), at.x, at.y)].xyz;
             weights += weight;
         }
-    push.sent.word[index] = weights > 0.0 ? max(packSharedExponent(sum / weights), kBlackWord) : 0u;
+    push.sent.word[index] = weights > 0.0 ? packKnownLight(sum / weights) : 0u;
 }

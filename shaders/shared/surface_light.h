@@ -18,7 +18,7 @@ SCONCE_CONST int kNearestReach = 2;            // texels to either side that the
 SCONCE_CONST real kNearestBend = real(0.5);
 SCONCE_CONST real kNearestWidths = real(3.0);
 SCONCE_CONST uint kNoTexel = 0xffffffffu;
-SCONCE_CONST uint kBlackWord = 1u; // known, and next to none
+SCONCE_CONST uint kBlackWord = 0x08000000u; // no light that is known: 0 with another exponent
 
 struct SurfacePoint
 {
@@ -87,6 +87,13 @@ SCONCE_FN real surfaceDensity(uint probe, vec3 point, vec3 normal)
     real d2 = max(dot(to, to), real(1e-12));
     real cosine = dot(to, normal) * inversesqrt(d2);
     return cosine > kSurfaceGrazing ? cosine / d2 : real(0.0);
+}
+
+/// A texel's light as it is stored where it is known.
+SCONCE_FN uint packKnownLight(vec3 light)
+{
+    uint word = packSharedExponent(light);
+    return word == 0u ? kBlackWord : word;
 }
 
 /// Share that a normal bent off its surface, by a texture say, gets of light that comes evenly from above the surface: what a hemisphere cut off by a
