@@ -23,6 +23,7 @@ for entry in "${list[@]}"; do
     for texels in 0 52; do
         "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --bounces 8 --surface-texels $texels --effects all -o "$at.sconce" --json --quiet > "$at.$texels.bake.json"
         "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" -o "$at.$texels.exr" --json --quiet > "$at.$texels.json"
+        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" --effects diffuse -o "$at.alone.exr" --json --quiet > "$at.$texels.alone.json"
         "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer diffuse_indirect --metric relmse,flip,mean --json --side-by-side "$at.$texels.png" > "$at.$texels.diffuse.json"
         "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer glossy_indirect --metric flip,mean --json > "$at.$texels.glossy.json"
     done
@@ -33,13 +34,14 @@ load = lambda end: json.load(open(f"{at}.{end}.json"))
 row = {"label": f"{name}, {count}"}
 for texels, way in (("0", "irradiance"), ("52", "surface")):
     error, glossy, bake = load(f"{texels}.diffuse"), load(f"{texels}.glossy"), load(f"{texels}.bake")
-    passes = load(texels)["passes_ms"]
-    ms = sum(passes.get(p, 0.0) for p in ("gather light", "surface light", "area light", "diffuse denoise"))
+    ms, alone = (sum(load(end)["passes_ms"].get(p, 0.0) for p in ("gather light", "surface light", "area light", "diffuse denoise"))
+                 for end in (texels, f"{texels}.alone"))
     row |= {f"{way}_relmse": f"{error['relmse']:.4f}", f"{way}_flip": f"{error['flip']:.3f}", f"{way}_mean": f"{error['mean']:.2f}",
-            f"{way}_glossy_flip": f"{glossy['flip']:.3f}", f"{way}_glossy_mean": f"{glossy['mean']:.2f}", f"{way}_ms": f"{ms:.0f}",
+            f"{way}_glossy_flip": f"{glossy['flip']:.3f}", f"{way}_glossy_mean": f"{glossy['mean']:.2f}", f"{way}_ms": f"{ms:.0f}", f"{way}_alone_ms": f"{alone:.1f}",
             f"{way}_bake_s": f"{bake['seconds']:.0f}", f"{way}_kib": f"{bake['bytes']['total'] / bake['probes'] / 1024:.0f}"}
 row["flip_ratio"] = f"{float(row['surface_flip']) / float(row['irradiance_flip']):.2f}"
 row["time_ratio"] = f"{float(row['surface_ms']) / float(row['irradiance_ms']):.2f}"
+row["alone_ratio"] = f"{float(row['surface_alone_ms']) / float(row['irradiance_alone_ms']):.2f}"
 print(f'  "{name.lower().replace("-", "_")}": {json.dumps(row)},')
 P
 done

@@ -144,7 +144,7 @@ TEST(FieldData, BytesByPartAddUpToWhatIsStored)
         EXPECT_EQ(bytes.distance + bytes.normals, field.distance.size() * 4);
         EXPECT_EQ(bytes.normals, chart == gpu::kChartOctahedral ? 3u * 16 * 16 * 2 : 0u);
         EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size() + field.prefiltered.size() +
-                                      field.patches.size()) +
+                                      field.patches.size() + field.surfaceLight.size()) +
                                      16 * 4 + 3 * 48);
     }
 }
