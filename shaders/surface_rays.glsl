@@ -19,7 +19,7 @@ uint linkOf(TraceResult hit, float lot)
     ivec2 low = clamp(ivec2(floor(at)), ivec2(0), ivec2(int(field.surfaceSize) - 2));
     vec2 f = clamp(at - vec2(low), vec2(0.0), vec2(1.0));
     uint found = kLinkNone;
-    float weights = 0.0, best = 1e30;
+    float weights = 0.0;
     for (int tap = 0; tap < 4; ++tap)
     {
         ivec2 texel = low + ivec2(tap & 1, tap >> 1);
@@ -70,7 +70,7 @@ bool meetsNearby(uint probe, vec3 from, vec3 direction, inout TraceResult hit)
 }
 
 /// A ray whose answer holds both ways: one that has changed probes is traced back from where it ended, and is unknown where that doesn't come to its
-/// start. Half of the few that pass a wall are found so, and of the others one in two hundred is lost; dark places are lit by those few.
+/// start. Half of the few that pass a wall are found so, and of the others one in two hundred is lost.
 TraceResult traceBothWays(vec3 point, vec3 direction, vec3 normal)
 {
     TraceResult hit = traceRay(point, direction, normal);

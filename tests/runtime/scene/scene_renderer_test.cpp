@@ -293,8 +293,8 @@ TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
         EXPECT_EQ(diffuseOnly->beauty[i], diffuseOnly->direct[i] + diffuseOnly->diffuseIndirect[i]);
 }
 
-// A sun 18 degrees off a wall shades 61 cm of it under a ledge of 20 cm, from the ledge on. The map's texel is 8 mm here: a receiver moved
-// off the wall by one and a half of them was lit for 4 cm under the ledge.
+// A sun 18 degrees off a wall shades 61 cm of it under a ledge of 20 cm, from the ledge on. The map's texel is some 6 mm here: a receiver
+// moved off the wall by one and a half of them is lit for 3 cm under the ledge.
 TEST_F(SceneRendererTest, ALowSunsShadowBeginsAtItsLedge)
 {
     Scene scene;
