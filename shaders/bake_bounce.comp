@@ -14,7 +14,7 @@ vec3 bounceIrradiance(vec3 point, vec3 normal, vec3 viewer)
     vec4 own = surfaceTaps(push.probe, point - viewer, normal);
     if (own.w > kSurfaceLeast) return own.xyz / own.w;
     int reads = 0;
-    return surfaceLightAt(point, normal, point + 0.5 * field.voxel * normal, reads).light;
+    return surfaceLightAt(point, normal, normal, point + 0.5 * field.voxel * normal, reads).light;
 }
 #else
 /// The leaf is asked half a voxel off the surface, on the side that the probe sees.

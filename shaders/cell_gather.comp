@@ -53,21 +53,28 @@ void main()
     vec3 point = cellPlace(cell, place), axis = faceDirection(int(facing), vec3(0.0, 0.0, 1.0));
     TangentFrame tangents = tangentFrame(axis);
     uvec2 pixel = uvec2(index / 6u, facing);
-    vec3 sum = vec3(0.0);
-    float known = 0.0;
+    vec3 sky = vec3(0.0), sum = vec3(0.0);
+    float ended = 0.0, surfaces = 0.0, known = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint sampled = i & ((1u << kSampleBits) - 1u), seed = 2654435769u * (i >> kSampleBits);
         vec3 direction = normalize(toWorld(tangents, sampleCosine(randomPair(pixel, sampled, kGatherStream, seed))));
-        TraceResult hit = traceBothWays(point, direction, vec3(0.0));
-        uint link = kLinkNone;
-        if (hit.status == kMiss) link = kLinkSky;
-        else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, seed).x);
+        float t;
+        uint link = endOfRay(point, direction, vec3(0.0), randomPair(pixel, sampled, kLinkStream, seed), t);
         if (link == kLinkNone) continue;
+        ended += 1.0;
+        if (link == kLinkSky)
+        {
+            sky += field.sky;
+            continue;
+        }
+        surfaces += 1.0;
+        if (link == kLinkSurface) continue;
         known += 1.0;
-        sum += link == kLinkSky ? field.sky : unpackSharedExponent(push.sentBefore.word[link]);
+        sum += unpackSharedExponent(push.sentBefore.word[link]);
     }
-    vec3 light = sum / max(known, 1.0);
-    if (lightsHeader.emitterCount > 0u) light += emittersAt(point, axis, axis, pixel);
-    push.sent.word[first + facing] = known < kLeastKnown * float(push.rays) ? 0u : packKnownLight(light);
+    vec3 light = (sky + sum / max(known, 1.0) * surfaces) / max(ended, 1.0);
+    float variance;
+    if (lightsHeader.emitterCount > 0u) light += emittersAt(point, axis, axis, pixel, variance);
+    push.sent.word[first + facing] = ended - surfaces + known < kLeastKnown * float(push.rays) ? 0u : packKnownLight(light);
 }

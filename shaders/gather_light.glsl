@@ -7,7 +7,8 @@ layout(constant_id = kListId) const uint kList = kListGathered;
 layout(constant_id = kGatherDiffuseId) const bool kDiffuse = true; // make the diffuse light
 layout(constant_id = kGatherRoughId) const bool kRough = true;   // make the rough reflections
 layout(constant_id = kByPatchesId) const bool kByPatches = false; // diffuse light from one probe's patches
-layout(set = 1, binding = kGatherDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
+layout(constant_id = kBySurfaceId) const bool kBySurface = false; // `diffuse` has been made, from surface light
+layout(set = 1, binding = kGatherDiffuseBinding, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
 layout(set = 1, binding = kGatherRoughBinding, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
 
 /// The probes with the largest weights, in order, and the largest weight of the others.
@@ -18,6 +19,8 @@ struct Heaviest
     float next;
 };
 const int kRoughProbes = 4; // that a rough reflection asks; at most 4
+const float kWidestLobe = 0.8;      // radians: as reflectedLobe()'s
+const float kMostOfSurface = 2.0;
 
 void weigh(inout Heaviest h, uint probe, float weight)
 {
@@ -29,6 +32,16 @@ void weigh(inout Heaviest h, uint probe, float weight)
     h.weight = mix(mix(h.weight, moved, after), vec4(weight), here);
     h.probe = uvec4(here.x ? probe : after.x ? movedProbe.x : h.probe.x, here.y ? probe : after.y ? movedProbe.y : h.probe.y,
                     here.z ? probe : after.z ? movedProbe.z : h.probe.z, here.w ? probe : after.w ? movedProbe.w : h.probe.w);
+}
+
+/// What a probe's light is to be scaled by, for shadows and near surfaces that it doesn't know: by the light at the surface over what the probe has
+/// for it, as Lazarov 2013, "Getting More Physical in Call of Duty: Black Ops II", scales environment maps by lightmaps.
+/// @param own    light at the surface, and where it is from: SurfaceLight
+/// @param above  what the probes have in the hemisphere above it
+vec3 shareOfSurface(vec4 own, vec3 above)
+{
+    if (own.a < -1.5) return vec3(1.0); // it is from the probes, and not all of it
+    return min(own.rgb / max(above, vec3(1e-20)), vec3(kMostOfSurface));
 }
 
 void main()
@@ -74,7 +87,7 @@ void main()
         float seen = seenAlong(heaviest.probe[i], point - probeHeader(heaviest.probe[i]).centre, lobe.direction);
         if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
     }
-    vec3 inLobe = vec3(0.0);
+    vec3 inLobe = vec3(0.0), above = vec3(0.0);
     weights = 1e-30;
     for (int i = 0; i < kRoughProbes; ++i)
     {
@@ -82,8 +95,14 @@ void main()
         float weight = heaviest.weight[i] - 0.999 * heaviest.next; // so that one that leaves the list has no say before
         vec3 fromProbe = point - probeHeader(heaviest.probe[i]).centre;
         inLobe += weight * lobeRadiance(heaviest.probe[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(heaviest.probe[i], fromProbe, lobe.direction));
+        if (kBySurface)
+        {
+            float open = guessedAlong(heaviest.probe[i], fromProbe, p.normal);
+            above += weight * lobeRadiance(heaviest.probe[i], fromProbe, Lobe(p.normal, kWidestLobe), open);
+        }
         weights += weight;
     }
+    if (kBySurface) inLobe *= shareOfSurface(imageLoad(diffuse, at), above / weights);
     // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
     imageStore(rough, at, vec4(inLobe / weights * specularColor(lobesAt(p.brdf, dot(p.normal, p.view))), 1.0));
 }

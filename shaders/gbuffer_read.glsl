@@ -42,6 +42,31 @@ Pixel readPixel(ivec2 at)
     return p;
 }
 
+float depthAt(ivec2 at) { return texelFetch(gDepth, clamp(at, ivec2(0), ivec2(frame.size) - 1), 0).r; }
+
+vec3 worldAt(ivec2 at, float depth)
+{
+    vec4 world = frame.worldFromClip * vec4((vec2(at) + 0.5) / vec2(frame.size) * 2.0 - 1.0, depth, 1.0);
+    return world.xyz / world.w;
+}
+
+/// From a pixel to the one before or after it, the one whose depth goes on as that of the next but one: reversed depth is linear along a plane.
+vec3 alongSurface(ivec2 at, ivec2 step_, Pixel p)
+{
+    float before = depthAt(at - step_), after = depthAt(at + step_);
+    float offBefore = abs(2.0 * before - depthAt(at - 2 * step_) - p.clip.z), offAfter = abs(2.0 * after - depthAt(at + 2 * step_) - p.clip.z);
+    return offBefore < offAfter ? p.position - worldAt(at - step_, before) : worldAt(at + step_, after) - p.position;
+}
+
+/// Normal of the surface itself, from depth, on the viewer's side: where the shading normal is bent far off it. 0 where depth doesn't tell. Cost: 8 reads.
+vec3 geometricNormalAt(ivec2 at, Pixel p)
+{
+    vec3 across = cross(alongSurface(at, ivec2(1, 0), p), alongSurface(at, ivec2(0, 1), p));
+    float size = length(across);
+    if (!(size > 0.0 && size < 1e30)) return vec3(0.0);
+    return across * ((dot(across, p.view) < 0.0 ? -1.0 : 1.0) / size);
+}
+
 /// Of a pixel, to ask how much others show the same surface.
 struct Surroundings
 {

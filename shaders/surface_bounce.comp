@@ -14,16 +14,21 @@ void main()
     uint ofProbe, index;
     if (!findTexel(texel, ofProbe, index)) return;
     vec3 sum = vec3(0.0);
-    float known = 0.0;
+    float ended = 0.0, surfaces = 0.0, known = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint link = push.links.word[i * texelsOfProbe() + ofProbe];
         if (link == kLinkNone) continue;
+        ended += 1.0;
+        if (link == kLinkSky) continue;
+        surfaces += 1.0;
+        if (link == kLinkSurface) continue;
         known += 1.0;
-        if (link != kLinkSky) sum += unpackSharedExponent(push.sentBefore.word[link]);
+        sum += unpackSharedExponent(push.sentBefore.word[link]);
     }
-    vec3 light = push.first.value[index].xyz + sum / max(known, 1.0);
-    push.light.value[index] = vec4(light, 0.0);
+    // Surfaces whose light isn't known send what the others send.
+    vec3 light = push.first.value[index].xyz + sum / max(known, 1.0) * (surfaces / max(ended, 1.0));
+    push.light.value[index].xyz = light;
     SurfaceTexel own = push.texels.value[index];
     push.sent.word[index] = packSharedExponent(unpackRootOfColor(own.albedo) * light + unpackSharedExponent(own.sent));
 }

@@ -27,7 +27,7 @@ void main()
     uvec2 pixel = texel.xy + uvec2(field.surfaceSize * texel.z, 0u);
     TangentFrame tangents = tangentFrame(normal);
     vec3 sky = vec3(0.0);
-    float known = 0.0, asked = 0.0, nearby = 0.0, nearness = 0.0;
+    float known = 0.0, ended = 0.0, asked = 0.0, nearby = 0.0, nearness = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint sampled = i & ((1u << kSampleBits) - 1u), round_ = i >> kSampleBits;
@@ -36,18 +36,32 @@ void main()
         if (dot(direction, surface.normal) > 0.0)
         {
             asked += 1.0;
+            vec2 lots = randomPair(pixel, sampled, kLinkStream, 2654435769u * round_);
+            float t;
             TraceResult hit;
-            if (meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit)) nearby += 1.0;
-            else hit = traceBothWays(point, direction, surface.normal);
-            if (hit.status == kMiss) link = kLinkSky;
-            else if (hit.status == kHit) link = linkOf(hit, randomPair(pixel, sampled, kLinkStream, 2654435769u * round_).x);
-            nearness += 1.0 / max(hit.t, 1e-6);
+            if (meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit))
+            {
+                nearby += 1.0;
+                t = hit.t;
+                link = linkOf(hit, lots.x);
+            }
+            else link = endOfRay(point, direction, surface.normal, lots, t);
+            nearness += 1.0 / max(t, 1e-6);
         }
         push.links.word[i * texelsOfProbe() + ofProbe] = link;
-        if (link != kLinkNone) known += 1.0;
+        if (link != kLinkNone && link != kLinkSurface) known += 1.0;
+        if (link != kLinkNone) ended += 1.0;
         if (link == kLinkSky) sky += field.sky;
     }
-    vec3 light = sky / max(known, 1.0);
-    if (lightsHeader.emitterCount > 0u) light += emittersAt(point, normal, surface.normal, pixel);
+    vec3 light = sky / max(ended, 1.0);
+    float luminousSky = luminance(field.sky), variance = 0.0;
+    if (luminousSky > 0.0) variance = luminousSky * luminousSky * varianceOfShare(luminance(sky) / luminousSky, ended);
+    if (lightsHeader.emitterCount > 0u)
+    {
+        float ofEmitters;
+        light += emittersAt(point, normal, surface.normal, pixel, ofEmitters);
+        variance += ofEmitters;
+    }
+    push.light.value[index].w = variance;
     push.first.value[index] = vec4(light, known < kLeastKnown * asked || nearby > kMostNearby * asked ? kNotKnown : float(push.rays) / max(nearness, 1e-6));
 }

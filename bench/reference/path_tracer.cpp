@@ -151,7 +151,7 @@ BrdfValue PathTracer::emitterLight(const ShadingPoint& point, vec3 view, Random&
     return value;
 }
 
-PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
+PathLight PathTracer::trace(vec3 origin, vec3 direction, vec3 textured, Random& random) const
 {
     PathLight light;
     auto hit = rays.closest(origin, direction);
@@ -160,6 +160,7 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, Random& random) const
         light.direct = scene.sky;
         return light;
     }
+    if (textured != direction) hit = rays.texturedBy(*hit, origin, textured);
     vec3 view = -direction;
     ShadingPoint point = shade(*hit, view);
     // In full: no draw of an emitter stands for what the eye sees itself.

@@ -35,7 +35,9 @@ public:
     PathTracer(const RayScene& scene, std::optional<float> roughnessOverride, uint32_t bounceCount);
 
     ShadingPoint shade(const SurfaceHit& hit, vec3 view) const;
-    PathLight trace(vec3 origin, vec3 direction, Random& random) const;
+    /// @param textured  of the ray by which the first hit is textured, see RayScene::texturedBy; unit
+    PathLight trace(vec3 origin, vec3 direction, vec3 textured, Random& random) const;
+    PathLight trace(vec3 origin, vec3 direction, Random& random) const { return trace(origin, direction, direction, random); }
 
 private:
     struct Scatter // a sampled direction with both lobes' brdf * cosine / density

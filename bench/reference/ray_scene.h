@@ -31,6 +31,10 @@ public:
     static Result<RayScene> create(const Scene& scene);
 
     std::optional<SurfaceHit> closest(vec3 origin, vec3 direction, float tFar = std::numeric_limits<float>::infinity()) const;
+    /// A hit whose textures are read where another ray from the same origin meets its plane: many such rays, spread over a pixel, filter
+    /// the textures of the surface that the pixel's centre sees (Pharr, Wronski, Salvi, Fajardo 2024, "Filtering After Shading with
+    /// Stochastic Texture Filtering"). As it was where that is far from it, as at a horizon, or in a hole of the material.
+    SurfaceHit texturedBy(SurfaceHit hit, vec3 origin, vec3 direction) const;
     bool occluded(vec3 origin, vec3 direction, float tFar) const { return rays.occluded(origin, direction, tFar); }
     /// As TriangleRays::distances.
     void distances(std::span<const vec3> origins, std::span<const vec3> directions, int width, std::span<float> t) const

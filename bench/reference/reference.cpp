@@ -134,35 +134,51 @@ struct Frame
         for (int i = 0; i < 3; ++i) images.layers[layer].pixels[pixel * 3 + size_t(i)] = value[i];
     }
 
-    void guides(size_t pixel, vec3 direction)
+    vec3 through(uint32_t x, uint32_t y, vec2 within) const
     {
-        const auto hit = rays.closest(pinhole.eye, direction);
+        return pinhole.direction(static_cast<float>(x) + within.x, static_cast<float>(y) + within.y, settings.width, settings.height);
+    }
+    /// By pixel and path, not by thread: the picture is the same for any number of threads.
+    Random randomOf(size_t pixel, uint32_t path) const { return Random(settings.seed, pixel, path); }
+
+    /// Of the surface at the pixel's centre, whose textures are those that the paths see.
+    void guides(uint32_t x, uint32_t y, vec3 centre)
+    {
+        const size_t pixel = size_t(y) * settings.width + x;
+        const auto hit = rays.closest(pinhole.eye, centre);
         if (!hit) return;
-        const ShadingPoint point = tracer.shade(*hit, -direction);
         images.layers[depth].pixels[pixel] = glm::dot(hit->position - pinhole.eye, pinhole.forward);
-        images.layers[roughness].pixels[pixel] = point.surface.roughness;
-        store(normal, pixel, point.normal);
-        store(albedo, pixel, point.surface.baseColor);
+        const uint32_t count = settings.pixelCentre ? settings.samples : 1;
+        glm::dvec3 normals(0.0), colors(0.0);
+        double roughnesses = 0.0;
+        for (uint32_t i = 0; i < count; ++i)
+        {
+            const bool filtered = settings.pixelCentre;
+            const SurfaceHit seen = filtered ? rays.texturedBy(*hit, pinhole.eye, through(x, y, randomOf(pixel, i).uniform2())) : *hit;
+            const ShadingPoint point = tracer.shade(seen, -centre);
+            normals += point.normal;
+            colors += point.surface.baseColor;
+            roughnesses += point.surface.roughness;
+        }
+        images.layers[roughness].pixels[pixel] = static_cast<float>(roughnesses / count);
+        store(normal, pixel, glm::normalize(normals));
+        store(albedo, pixel, vec3(colors / double(count)));
     }
 
     /// False: cancelled, the pixel is unfinished.
     bool render(uint32_t x, uint32_t y, Pace& pace)
     {
         const size_t pixel = size_t(y) * settings.width + x;
-        const vec3 centre = pinhole.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, settings.width, settings.height);
-        if (settings.guides) guides(pixel, centre);
+        const vec3 centre = through(x, y, vec2(0.5f));
+        if (settings.guides) guides(x, y, centre);
         // Every other path in each half: what the two halves differ by tells the error of the whole.
         glm::dvec3 sums[3]{}, halves[3][2]{}, parts[3][3]{}; // of beauty, diffuse, glossy
         for (uint32_t i = 0; i < settings.samples; ++i)
         {
             if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
-            // By pixel and path, not by thread: the picture is the same for any number of threads.
-            Random random(settings.seed, pixel, i);
-            const vec2 jitter = random.uniform2();
-            const vec3 ray = settings.pixelCentre ? centre
-                                                  : pinhole.direction(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y,
-                                                                      settings.width, settings.height);
-            const PathLight path = tracer.trace(pinhole.eye, ray, random);
+            Random random = randomOf(pixel, i);
+            const vec3 within = through(x, y, random.uniform2());
+            const PathLight path = tracer.trace(pinhole.eye, settings.pixelCentre ? centre : within, within, random);
             // One such path would spoil its pixel whatever the other paths say; it counts as black, and is reported.
             if (!allFinite(path))
             {

@@ -24,7 +24,8 @@ struct ReferenceSettings
     std::optional<float> roughness;              // [0,1]; set: the roughness of every surface
     bool guides = true;                          // depth, normal, albedo and roughness, too: one more ray a pixel; false: left out
     bool pixelCentre =
-        knobs::pixelCentre.value;    // true: every path starts at the pixel's centre, as a rasteriser's; false: box filter over the pixel
+        knobs::pixelCentre
+            .value; // true: every path starts at the pixel's centre, as a rasteriser's, textures alone by a box filter; false: all
     bool parts = knobs::parts.value; // layers kParts of beauty and the indirect terms: what some of the paths bring
     Camera camera;
 };
@@ -32,7 +33,7 @@ struct ReferenceSettings
 struct Reference
 {
     /// beauty = direct + diffuse_indirect + glossy_indirect; depth (metres along the view axis, 0: sky), normal (shading, on the
-    /// viewer's side), albedo (base colour), roughness, these four always through the pixel's centre.
+    /// viewer's side), albedo (base colour), roughness, these four always of the surface at the pixel's centre.
     /// direct: emission seen by the camera, light of the lights without area at the first hit, sky where nothing is hit.
     /// indirect: all other light that arrives at the first hit, reflected there by the diffuse or the specular lobe.
     ImageSet images;

@@ -100,18 +100,17 @@ Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipe
 Status IndirectLight::State::makeGather()
 {
     const IndirectEffects& effects = desc.effects;
-    if (gathersDiffuse())
-        if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
     if (effects.rough)
         if (auto s = makeImage(roughImage, kLightFormat, "rough reflections"); !s) return s;
-    const GpuImage& diffuse = gathersDiffuse() ? diffuseImage : roughImage;
+    const GpuImage& diffuse = diffuseImage ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
     const Spirv shader = shaders.gather.empty() ? Spirv(gather_light_comp) : shaders.gather;
     return makePass(gatherPass, gatherSet, shader, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
                     {{gpu::kGatherDiffuseId, gathersDiffuse() ? 1u : 0u},
                      {gpu::kGatherRoughId, effects.rough ? 1u : 0u},
                      {gpu::kListId, gatherList()},
-                     {gpu::kByPatchesId, effects.patches ? 1u : 0u}});
+                     {gpu::kByPatchesId, effects.patches ? 1u : 0u},
+                     {gpu::kBySurfaceId, readsSurfaces() ? 1u : 0u}});
 }
 
 IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes)
@@ -132,14 +131,15 @@ Status IndirectLight::State::make()
         if (!tiles) return tiles.error();
         tileList = std::make_unique<TileList>(std::move(*tiles));
     }
+    if (gathersDiffuse() || readsSurfaces())
+        if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
+    if (readsSurfaces())
+        if (auto s = makePass(surfacePass, surfaceSet, surface_light_comp, {{gpu::kSurfaceDiffuseBinding, &diffuseImage}},
+                              {{gpu::kListId, surfaceList()}});
+            !s)
+            return s;
     if (gathersDiffuse() || effects.rough)
         if (auto s = makeGather(); !s) return s;
-    if (readsSurfaces())
-    {
-        if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
-        if (auto s = makePass(surfacePass, surfaceSet, surface_light_comp, {{gpu::kSurfaceDiffuseBinding, &diffuseImage}}, {}); !s)
-            return s;
-    }
     if (tracesDiffuse())
     {
         if (auto s = makeTrace(gpu::kTermDiffuse, diffuseImage, diffusePass, diffuseSet); !s) return s;
@@ -223,10 +223,12 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     };
     // Ahead of all passes, which run by its lists.
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
+    pass(surfacePass, surfaceSet, surfaceList(), "surface light");
+    scan("surface light", {&diffuseImage});
+    if (surfacePass && gatherPass) // which scales rough reflections by the light at surfaces
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
     pass(gatherPass, gatherSet, gatherList(), "gather light");
     scan("gather light", {&diffuseImage, &roughImage});
-    pass(surfacePass, surfaceSet, gpu::kTermDiffuse, "surface light");
-    scan("surface light", {&diffuseImage});
     pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace", everyLog());
     scan("diffuse trace", {&diffuseImage});
     pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace", everyLog());

@@ -56,6 +56,7 @@ private:
     uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
     bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
     bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }
+    uint32_t surfaceList() const { return desc.effects.rough ? gpu::kListGathered : gpu::kTermDiffuse; }
     uint32_t gatherList() const // of the tiles that the gathering pass runs on
     {
         return !gathersDiffuse() ? gpu::kTermRough : desc.effects.rough ? gpu::kListGathered : gpu::kTermDiffuse;

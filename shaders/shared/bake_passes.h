@@ -56,13 +56,14 @@ const uint kBakeAreaLightId = 0u; // bake_surface.comp: whether direct light has
 // Where a gathering ray of a texel ended: the index of another texel, whose light it brings, or one of these.
 const uint kLinkSky = 0xffffffffu;
 const uint kLinkNone = 0xfffffffeu; // nothing is known of it
+const uint kLinkSurface = 0xfffffffdu; // a surface of whose light nothing is known
 
 /// Of the passes that gather light at surfaces, over one probe's texels.
 struct SurfacePush
 {
     SCONCE_ADDRESS(SurfaceTexels) texels; // of all probes
     SCONCE_ADDRESS(SurfaceFloats) first;  // of all probes: mean radiance straight from emitters and sky; harmonic mean of the rays' lengths, field units
-    SCONCE_ADDRESS(SurfaceFloats) light;  // of all probes: mean radiance that arrives, 0
+    SCONCE_ADDRESS(SurfaceFloats) light;  // of all probes: mean radiance that arrives; variance of the luminance of `first`, by chance
     SCONCE_ADDRESS(BakeWords) links;      // of this probe, [ray][texel]
     SCONCE_ADDRESS(BakeWords) sentBefore; // of all probes: radiance that each texel sends, RGB9E5
     SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter and of cells, the surface light

@@ -62,6 +62,9 @@ SCONCE_PURE uint packSharedExponent(vec3 c)
            (uint(exponent + 15) << 27);
 }
 
+/// Relative luminance of linear RGB with BT.709's primaries.
+SCONCE_PURE real luminance(vec3 color) { return dot(color, vec3(real(0.2126), real(0.7152), real(0.0722))); }
+
 SCONCE_PURE vec3 unpackSharedExponent(uint w)
 {
     real scale = uintBitsToFloat(((w >> 27) + (127u - 24u)) << 23); // 2^(exponent - 15 - 9)

@@ -45,13 +45,14 @@ const uint kTermId = 3u;
 const uint kEveryLogId = 4u; // trace_glossy.comp, reconstruct.comp, classify_tiles.comp
 const uint kCountId = 5u;    // trace_glossy.comp
 const uint kBlendedId = 6u;  // denoise.comp
-const uint kListId = 7u;     // gather_light.comp
+const uint kListId = 7u;     // gather_light.comp, surface_light.comp
 const uint kGatherDiffuseId = 8u;
 const uint kGatherRoughId = 9u;
 const uint kByPatchesId = 10u;
 const uint kMadeId = 11u; // compose.comp
 const uint kDiffuseLayerId = 12u;
 const uint kGlossyLayerId = 13u;
+const uint kBySurfaceId = 14u; // gather_light.comp
 
 struct DenoisePush
 {

@@ -96,10 +96,6 @@ SCONCE_FN uint packKnownLight(vec3 light)
     return word == 0u ? kBlackWord : word;
 }
 
-/// Share that a normal bent off its surface, by a texture say, gets of light that comes evenly from above the surface: what a hemisphere cut off by a
-/// plane at that angle sees. From which side more of it comes isn't known.
-SCONCE_FN real shareAbove(vec3 normal, vec3 surface) { return real(0.5) + real(0.5) * max(dot(normal, surface), real(0.0)); }
-
 /// Sum of the four taps about a point that lie on its surface, and of their weights, bilinear. Cost: 8 reads.
 /// @param point  relative to the probe's centre
 SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
@@ -125,8 +121,7 @@ SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
         if (!isSameSurface(point, normal, texel, kSurfaceBend)) continue;
         uint word = surfaceWord(surfaceIndex(probe, face, x, y));
         if (word == 0u) continue;
-        vec3 light = unpackSharedExponent(word);
-        sum += weight * vec4(light * shareAbove(normal, texel.normal), real(1.0));
+        sum += weight * vec4(unpackSharedExponent(word), real(1.0));
     }
     return sum;
 }
@@ -179,17 +174,18 @@ SCONCE_FN int largestOf(vec4 v)
 /// Light at a surface point from what its probes see of it: of a leaf's probes the two that see most of it, and of their texels those of the same
 /// surface. Cost: about 25 reads; up to 50 more where no texel shows the point, and up to 68 where nothing
 /// near it does (light_cells.h).
-/// @param point   field space; `normal`: unit, on the side that is looked at
+/// @param point   field space
+/// @param normal  unit, that the light falls on; `facing`: that of the surface, on the side that is looked at
 /// @param lookUp  point whose leaf is asked
-SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCONCE_INOUT(int) reads)
+SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 facing, vec3 lookUp, SCONCE_INOUT(int) reads)
 {
     SurfaceLight result;
     result.light = vec3(real(0.0));
     result.probes = 0;
-    if (!canGather(point, normal)) return result;
+    if (!canGather(point, facing)) return result;
     uvec4 ranked = rankedProbesAt(lookUp, reads);
-    vec4 density = vec4(surfaceDensity(ranked.x, point, normal), surfaceDensity(ranked.y, point, normal),
-                        surfaceDensity(ranked.z, point, normal), surfaceDensity(ranked.w, point, normal));
+    vec4 density = vec4(surfaceDensity(ranked.x, point, facing), surfaceDensity(ranked.y, point, facing),
+                        surfaceDensity(ranked.z, point, facing), surfaceDensity(ranked.w, point, facing));
     // A list of fewer repeats some.
     if (ranked.y == ranked.x) density.y = real(0.0);
     if (ranked.z == ranked.x || ranked.z == ranked.y) density.z = real(0.0);
@@ -204,8 +200,8 @@ SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCON
         uint probe = ranked[which];
         density[which] = real(0.0);
         vec3 fromProbe = point - vec3(probeHeader(probe).centre);
-        if (!isSeenBy(probe, fromProbe, normal)) continue;
-        vec4 taps = surfaceTaps(probe, fromProbe, normal);
+        if (!isSeenBy(probe, fromProbe, facing)) continue;
+        vec4 taps = surfaceTaps(probe, fromProbe, facing);
         if (taps.w > kSurfaceLeast)
         {
             sum += most * taps;
@@ -220,9 +216,9 @@ SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 lookUp, SCON
         return result;
     }
     uint nearest = kNoTexel;
-    if (seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seeing.x, point - vec3(probeHeader(seeing.x).centre), normal);
+    if (seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seeing.x, point - vec3(probeHeader(seeing.x).centre), facing);
     if (nearest == kNoTexel && seeing.y != kNoProbe)
-        nearest = nearestSurfaceTexel(seeing.y, point - vec3(probeHeader(seeing.y).centre), normal);
+        nearest = nearestSurfaceTexel(seeing.y, point - vec3(probeHeader(seeing.y).centre), facing);
     uint word = 0u;
     if (nearest != kNoTexel) word = surfaceWord(nearest);
     if (word != 0u)

@@ -43,7 +43,7 @@ auto lightOf(const FieldData& field, vec3 point, vec3 normal)
     Text text(field, testing_support::defaultQuality());
     const vec3 p = (point - field.info.origin) / field.info.scale;
     int reads = 0;
-    return text.surfaceLightAt(p, normal, p + 0.5f * field.info.voxel * normal, reads);
+    return text.surfaceLightAt(p, normal, normal, p + 0.5f * field.info.voxel * normal, reads);
 }
 
 TEST(SurfaceLight, TexelsLieOnTheWallsThatTheirProbesSee)

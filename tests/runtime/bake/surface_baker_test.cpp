@@ -176,7 +176,7 @@ TEST_F(SurfaceBake, BelowALampIsTheLampsFormFactor)
     Text text(field, {});
     const vec3 p = (vec3(0.0f) - field.info.origin) / field.info.scale;
     int reads = 0;
-    const auto found = text.surfaceLightAt(p, vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads);
+    const auto found = text.surfaceLightAt(p, vec3(0, 1, 0), vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads);
     EXPECT_EQ(found.probes, 2);
     EXPECT_NEAR(found.light.g, 2.0 * 4.0 * corner, 0.02 * 8.0 * corner);
 }
@@ -193,7 +193,7 @@ TEST_F(SurfaceBake, AGlobeOfACentimetreIsNoBrighterThanItsOutside)
     Text text(field, {});
     const vec3 p = (vec3(0.0f) - field.info.origin) / field.info.scale;
     int reads = 0;
-    const double arriving = text.surfaceLightAt(p, vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads).light.g;
+    const double arriving = text.surfaceLightAt(p, vec3(0, 1, 0), vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads).light.g;
     EXPECT_NEAR(arriving, 1000.0 * kRadius * kRadius, 0.03 * 1000.0 * kRadius * kRadius); // a disc of its radius, 1 m off
 }
 

@@ -183,7 +183,7 @@ TEST_F(SceneRendererTest, DiffuseLightAtSurfacesIsWhatTheTextSaysOnTheHost)
         const vec3 world = camera.eye + frame->depth[i] * (forward + tangent * (x * right - y * up));
         const vec3 point = (world - field->info.origin) / field->info.scale, normal = glm::normalize(frame->normal[i]);
         int reads = 0;
-        const vec3 light = text.surfaceLightAt(point, normal, point + 0.5f * field->info.voxel * normal, reads).light;
+        const vec3 light = text.surfaceLightAt(point, normal, normal, point + 0.5f * field->info.voxel * normal, reads).light;
         const BrdfSurface surface{frame->albedo[i], 0.0f, frame->roughness[i]};
         const vec3 shown = light * lobesAt(surface, glm::dot(normal, glm::normalize(camera.eye - world))).diffuse;
         ++compared;
