@@ -200,6 +200,11 @@ float coverage(const Scene& scene, uint32_t material, vec2 uv)
     return m.blended ? std::clamp(alpha, 0.0f, 1.0f) : alpha < m.alphaCutoff ? 0.0f : 1.0f;
 }
 
+bool hasNormalTextures(const Scene& scene)
+{
+    return std::ranges::any_of(scene.materials, [](const Material& m) { return m.normalTexture.image >= 0; });
+}
+
 vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv)
 {
     const Material& m = scene.materials[material];

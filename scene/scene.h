@@ -144,6 +144,9 @@ SurfacePoint evaluateMaterial(const Scene& scene, uint32_t material, vec2 uv);
 /// How much of a point is there, [0,1]: 1 or 0 by the cutoff, alpha of a blended material.
 float coverage(const Scene& scene, uint32_t material, vec2 uv);
 
+/// Whether any material bends its normals by a texture.
+bool hasNormalTextures(const Scene& scene);
+
 /// The normal texture's value at a uv, [0,1]; (0.5, 0.5, 1) where there is none.
 vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv);
 

@@ -47,5 +47,7 @@ void main()
             count += 1.0;
         }
     uint facing = packNormal8(normalize(normal)) | kSurfaceKnown;
-    push.texels.value[index] = SurfaceTexel(packRootOfColor(albedo / count), facing, packSharedExponent(sent / count));
+    // What the surface sends of the light on its plane: less the more its normals spread, by textures, as each sees less of the hemisphere.
+    float share = min(0.5 + 0.5 * length(normal) / count, 1.0);
+    push.texels.value[index] = SurfaceTexel(packRootOfColor(share * albedo / count), facing, packSharedExponent(sent / count));
 }

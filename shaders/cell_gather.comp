@@ -57,10 +57,8 @@ void main()
     float ended = 0.0, surfaces = 0.0, known = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
-        uint sampled = i & ((1u << kSampleBits) - 1u), seed = 2654435769u * (i >> kSampleBits);
-        vec3 direction = normalize(toWorld(tangents, sampleCosine(randomPair(pixel, sampled, kGatherStream, seed))));
         float t;
-        uint link = endOfRay(point, direction, vec3(0.0), randomPair(pixel, sampled, kLinkStream, seed), t);
+        uint link = endOfRay(point, gatherDirection(tangents, pixel, i), vec3(0.0), pairOfRay(pixel, i, kLinkStream), t);
         if (link == kLinkNone) continue;
         ended += 1.0;
         if (link == kLinkSky)
@@ -75,6 +73,7 @@ void main()
     }
     vec3 light = (sky + sum / max(known, 1.0) * surfaces) / max(ended, 1.0);
     float variance;
-    if (lightsHeader.emitterCount > 0u) light += emittersAt(point, axis, axis, pixel, variance);
+    vec3 tilt;
+    if (lightsHeader.emitterCount > 0u) light += emittersAt(point, axis, axis, pixel, variance, tilt);
     push.sent.word[first + facing] = ended - surfaces + known < kLeastKnown * float(push.rays) ? 0u : packKnownLight(light);
 }

@@ -27,6 +27,7 @@ void main()
     bool known = push.first.value[index].w != kNotKnown;
     float ownFirst = luminance(push.first.value[index].xyz), ownVariance = push.light.value[index].w;
     vec3 bounced = vec3(0.0), straight = vec3(0.0);
+    vec2 tilt = vec2(0.0);
     float weights = 0.0, straightWeights = 0.0;
     for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx)
@@ -45,6 +46,10 @@ void main()
             if (known) weight *= exp(-off * off / max(2.0 * kLikeNoise * (ownVariance + light.w) + slack * slack, 1e-30));
             straight += weight * first.xyz;
             straightWeights += weight;
+            if (field.surfaceDirections != 0u) tilt += weight * push.tilts.value[there].zw;
         }
-    push.sent.word[index] = straightWeights > 0.0 ? packKnownLight(bounced / weights + straight / straightWeights) : 0u;
+    vec3 light = straightWeights > 0.0 ? bounced / weights + straight / straightWeights : vec3(0.0);
+    push.sent.word[index] = straightWeights > 0.0 ? packKnownLight(light) : 0u;
+    if (field.surfaceDirections != 0u)
+        push.tilted.word[index] = packTilt(straightWeights > 0.0 ? tilt / (straightWeights * max(luminance(light), 1e-20)) : vec2(0.0));
 }

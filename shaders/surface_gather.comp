@@ -21,22 +21,21 @@ void main()
     uint ofProbe, index;
     if (!findTexel(texel, ofProbe, index)) return;
     SurfacePoint surface = surfacePointAt(push.probe, int(texel.z), int(texel.x), int(texel.y));
-    vec3 normal = unpackNormal8(push.texels.value[index].normal);
+    vec3 normal = normalOfTexel(index, surface);
     // Off the surface by what the distance of its texel is packed to, besides.
     vec3 point = probeHeader(push.probe).centre + surface.at + (push.offset + 5e-4 * length(surface.at)) * surface.normal;
-    uvec2 pixel = texel.xy + uvec2(field.surfaceSize * texel.z, 0u);
+    uvec2 pixel = pixelOfTexel(texel);
     TangentFrame tangents = tangentFrame(normal);
-    vec3 sky = vec3(0.0);
+    vec3 sky = vec3(0.0), slopes = vec3(0.0);
     float known = 0.0, ended = 0.0, asked = 0.0, nearby = 0.0, nearness = 0.0;
     for (uint i = 0u; i < push.rays; ++i)
     {
-        uint sampled = i & ((1u << kSampleBits) - 1u), round_ = i >> kSampleBits;
-        vec3 direction = normalize(toWorld(tangents, sampleCosine(randomPair(pixel, sampled, kGatherStream, 2654435769u * round_))));
+        vec3 direction = gatherDirection(tangents, pixel, i);
         uint link = kLinkNone;
         if (dot(direction, surface.normal) > 0.0)
         {
             asked += 1.0;
-            vec2 lots = randomPair(pixel, sampled, kLinkStream, 2654435769u * round_);
+            vec2 lots = pairOfRay(pixel, i, kLinkStream);
             float t;
             TraceResult hit;
             if (meetsNearby(push.probe, point - probeHeader(push.probe).centre, direction, hit))
@@ -51,17 +50,23 @@ void main()
         push.links.word[i * texelsOfProbe() + ofProbe] = link;
         if (link != kLinkNone && link != kLinkSurface) known += 1.0;
         if (link != kLinkNone) ended += 1.0;
-        if (link == kLinkSky) sky += field.sky;
+        if (link != kLinkSky) continue;
+        sky += field.sky;
+        slopes += slopeOf(direction, normal);
     }
     vec3 light = sky / max(ended, 1.0);
     float luminousSky = luminance(field.sky), variance = 0.0;
     if (luminousSky > 0.0) variance = luminousSky * luminousSky * varianceOfShare(luminance(sky) / luminousSky, ended);
+    vec3 tilt = luminousSky * slopes / max(ended, 1.0);
     if (lightsHeader.emitterCount > 0u)
     {
         float ofEmitters;
-        light += emittersAt(point, normal, surface.normal, pixel, ofEmitters);
+        vec3 theirs;
+        light += emittersAt(point, normal, surface.normal, pixel, ofEmitters, theirs);
         variance += ofEmitters;
+        tilt += theirs;
     }
     push.light.value[index].w = variance;
+    if (field.surfaceDirections != 0u) push.tilts.value[index] = vec4(alongPlane(tilt, normal), vec2(0.0));
     push.first.value[index] = vec4(light, known < kLeastKnown * asked || nearby > kMostNearby * asked ? kNotKnown : float(push.rays) / max(nearness, 1e-6));
 }

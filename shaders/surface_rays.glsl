@@ -1,10 +1,9 @@
 // Rays that gather light at a place through the light field: what they end at, and what emitters give. After the light field and `push`, a SurfacePush.
-// All places draw the same numbers, so that the order of probes changes nothing.
 #include "lights.glsl"
-#include "shared/sample_pair.h"
+#include "gather_direction.glsl"
 
 const float kLeastKnown = 0.5; // share of the rays whose end must be known
-const uint kGatherStream = 6u, kShadowStream = 7u, kLinkStream = 8u;
+const uint kShadowStream = 7u, kLinkStream = 8u;
 
 /// A texel that shows where a ray ended, drawn among the four about it by their weights; else the nearest of the same surface; else kLinkSurface.
 uint linkOf(TraceResult hit, float lot)
@@ -109,10 +108,11 @@ float varianceOfShare(float came, float tries)
 }
 
 /// Mean over the hemisphere of the radiance that comes straight from emitters.
-/// @param variance  of its luminance, by chance
-vec3 emittersAt(vec3 point, vec3 normal, vec3 geometric, uvec2 pixel, out float variance)
+/// @param variance  of its luminance, by chance; `tilt`: of its luminance, along the plane
+vec3 emittersAt(vec3 point, vec3 normal, vec3 geometric, uvec2 pixel, out float variance, out vec3 tilt)
 {
     variance = 0.0;
+    tilt = vec3(0.0);
     uint begin = lightsHeader.deltaCount, end = begin + lightsHeader.emitterCount;
     float total = 0.0;
     for (uint i = begin; i < end; ++i)
@@ -145,7 +145,9 @@ vec3 emittersAt(vec3 point, vec3 normal, vec3 geometric, uvec2 pixel, out float 
         if (!reached) continue;
         arrived += 1.0;
         sum += s.irradiance / max(luminance(s.irradiance), 1e-30);
+        tilt += slopeOf(s.toLight, normal);
     }
+    tilt *= step / kBrdfPi;
     variance = total * total / (kBrdfPi * kBrdfPi) * varianceOfShare(arrived, float(count));
     return sum * step / kBrdfPi;
 }

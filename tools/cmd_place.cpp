@@ -30,7 +30,8 @@ struct PlaceOptions
 /// As many probes as the budget holds. Errors: badArgument with the bytes that one needs.
 Result<uint32_t> countFor(uint64_t memory, uint32_t resolution)
 {
-    const uint64_t each = bytesPerProbe(gpu::kChartCube, resolution);
+    // The scene is read later: as if it had normal textures, which take a few bytes more.
+    const uint64_t each = bytesPerProbe(gpu::kChartCube, resolution, knobs::surfaceTexels.value, true);
     if (memory < each)
         return Error{ErrorCode::badArgument,
                      fmt::format("--memory is {} bytes, but one probe takes {} at --resolution {}; raise the one or lower the other.",

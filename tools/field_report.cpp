@@ -53,6 +53,7 @@ Json fieldJson(const FieldData& field)
     json["resolution"] = field.resolution;
     json["face_size"] = info.faceSize;
     json["surface_size"] = info.surfaceSize;
+    json["surface_directions"] = info.surfaceDirections != 0;
     json["bounces"] = field.bounces;
     json["effects"] = field.effects;
     json["bytes"] = bytesJson(bytesByPart(field));
@@ -81,8 +82,9 @@ void printField(const FieldData& field, const std::string& file)
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
               << ", voxels of " << field.octree.voxel * info.scale << " m\n";
     if (info.surfaceSize > 0)
-        std::cout << fmt::format("surface light: {} texels a face's side; {}, {} of it in cells of {} m in the open\n", info.surfaceSize,
-                                 megabytes(bytes.surface), megabytes(bytes.cells), float(1 << info.cellShift) * info.voxel * info.scale);
+        std::cout << fmt::format("surface light: {} texels a face's side{}; {}, {} of it in cells of {} m in the open\n", info.surfaceSize,
+                                 info.surfaceDirections != 0 ? " with directions" : "", megabytes(bytes.surface), megabytes(bytes.cells),
+                                 float(1 << info.cellShift) * info.voxel * info.scale);
     std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;

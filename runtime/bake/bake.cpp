@@ -136,7 +136,8 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     const uint64_t light = radianceWordsPerProbe(info.chart, info.faceSize); // radiance, surfaces, direct light, emission
     // The octree is built from a copy of all maps on the device, which for a software device is main memory again.
     const uint64_t texels = 6ull * info.surfaceSize * info.surfaceSize; // of surface light: links, what bounces need, the light itself
-    const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 13 : 0));
+    const uint64_t tilts = info.surfaceDirections != 0 ? 6 : 0;         // words a texel
+    const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 13 + tilts : 0));
     const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 || surface > 0 ? 3 : 2) * light +
                            (emitters ? light : 0) + surface;
     const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
@@ -299,7 +300,7 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
         if (added < double(settings.converged) * *sent) break;
     }
     if (!before) return before.error();
-    field.surfaceLight.resize(texels.size() + cellWords(field.info));
+    field.surfaceLight.resize(surfaceTexelWords(field.info) + cellWords(field.info));
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     auto lit = asItIs(gpu);
     if (!lit) return lit.error();
@@ -336,6 +337,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     info.probeCount = uint32_t(probes.size());
     setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
     info.surfaceSize = surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
+    info.surfaceDirections = info.surfaceSize > 0 && hasNormalTextures(scene) ? 1 : 0;
     if (settings.grid)
     {
         info.gridX = uint32_t(settings.grid->count.x);

@@ -12,6 +12,7 @@
 #include "spirv/surface_bounce_comp.h"
 #include "spirv/surface_filter_comp.h"
 #include "spirv/surface_gather_comp.h"
+#include "spirv/surface_tilt_comp.h"
 
 namespace sconce
 {
@@ -25,11 +26,11 @@ Result<SurfaceBaker> SurfaceBaker::create(Gpu& gpu, const DeviceScene& scene, co
     return baker;
 }
 
-Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
+Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
 {
-    assert(texels.size() == texelsOfProbe() * field.info().probeCount);
-    links.resize(texels.size() * desc.rays);
-    auto known = gpu->makeBufferWith(texels, 0, "surface texels");
+    assert(asked.size() == texels());
+    links.resize(asked.size() * desc.rays);
+    auto known = gpu->makeBufferWith(asked, 0, "surface texels");
     if (!known) return known.error();
     texelBuffer = std::move(*known);
     struct Need
@@ -39,9 +40,11 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
         const char* what;
     };
     for (const Need& need :
-         {Need{first, texels.size() * 16, "first light at surfaces"}, Need{light, texels.size() * 16, "light at surfaces"},
-          Need{sent, texels.size() * 4, "light that surfaces send"}, Need{sentBefore, texels.size() * 4, "light that surfaces sent"},
+         {Need{first, texels() * 16, "first light at surfaces"}, Need{light, texels() * 16, "light at surfaces"},
+          Need{sent, texels() * 4, "light that surfaces send"}, Need{sentBefore, texels() * 4, "light that surfaces sent"},
           Need{filtered, words() * 4, "filtered light at surfaces"},
+          Need{tilts, directions() ? texels() * 16 : 16, "tilts of light at surfaces"},
+          Need{tilted, directions() ? texels() * 4 : 4, "filtered tilts of light at surfaces"},
           Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
     {
         auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
@@ -53,19 +56,21 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> texels)
     for (const auto& [pipeline, code, setCount] : {std::tuple<Pipeline*, Spirv, size_t>{&gatherPass, surface_gather_comp, 2},
                                                    {&cellPass, cell_gather_comp, 2},
                                                    {&bouncePass, surface_bounce_comp, 1},
+                                                   {&tiltPass, surface_tilt_comp, 1},
                                                    {&filterPass, surface_filter_comp, 1}})
     {
         auto made = Pipeline::compute(*gpu, code, std::span(sets).first(setCount), sizeof(gpu::SurfacePush), constants);
         if (!made) return made.error();
         *pipeline = std::move(*made);
     }
-    std::vector<uint32_t> direct(texels.size());
-    std::ranges::transform(texels, direct.begin(), &gpu::SurfaceTexel::sent);
+    std::vector<uint32_t> direct(asked.size());
+    std::ranges::transform(asked, direct.begin(), &gpu::SurfaceTexel::sent);
     // Sky is never written to: it stays 0.
     auto cleared = gpu->submit(
         [&](VkCommandBuffer cmd)
         {
-            for (const Buffer* buffer : {&first, &light, &sentBefore}) gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+            for (const Buffer* buffer : {&first, &light, &sentBefore, &tilts})
+                gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
         });
     if (!cleared) return cleared;
     return gpu->upload(sent, 0, std::as_bytes(std::span(direct)));
@@ -78,6 +83,8 @@ gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
     push.first = first.address();
     push.light = light.address();
     push.links = linkBuffer.address();
+    push.tilts = tilts.address();
+    push.tilted = tilted.address();
     push.sentBefore = sentBefore.address();
     push.sent = sent.address();
     push.probe = probe;
@@ -114,15 +121,20 @@ Status SurfaceBaker::gather(uint32_t probe)
     return gpu->download(linkBuffer, 0, std::as_writable_bytes(std::span(links).subspan(probe * count, count)));
 }
 
+/// A probe's links, to the buffer that holds one probe's.
+Status SurfaceBaker::upload(uint32_t probe)
+{
+    const size_t count = texelsOfProbe() * desc.rays;
+    return gpu->upload(linkBuffer, 0, std::as_bytes(std::span(links).subspan(probe * count, count)));
+}
+
 Status SurfaceBaker::bounce()
 {
     std::swap(sent, sentBefore);
-    const size_t count = texelsOfProbe() * desc.rays;
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
     {
         if (lit)
-            if (auto status = gpu->upload(linkBuffer, 0, std::as_bytes(std::span(links).subspan(probe * count, count))); !status)
-                return status;
+            if (auto status = upload(probe); !status) return status;
         if (auto status = dispatch(bouncePass, false, probe, lit ? desc.rays : 0, "surface bounce", light); !status) return status;
     }
     lit = true;
@@ -132,7 +144,7 @@ Status SurfaceBaker::bounce()
 Result<double> SurfaceBaker::meanSent()
 {
     const uint32_t side = field.info().surfaceSize;
-    std::vector<uint32_t> words(texelsOfProbe() * field.info().probeCount);
+    std::vector<uint32_t> words(texels());
     if (auto status = gpu->download(sent, 0, std::as_writable_bytes(std::span(words))); !status) return status.error();
     double sum = 0.0, all = 0.0;
     for (size_t i = 0; i < words.size(); ++i)
@@ -163,13 +175,32 @@ Status SurfaceBaker::gatherCells()
         });
 }
 
+/// Of the light after the last bounce.
+Status SurfaceBaker::findTilts()
+{
+    for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
+    {
+        if (auto status = upload(probe); !status) return status;
+        if (auto status = dispatch(tiltPass, false, probe, desc.rays, "surface tilt", tilts); !status) return status;
+    }
+    return success();
+}
+
 Status SurfaceBaker::read(std::span<uint32_t> found)
 {
     assert(found.size() == words());
+    if (directions())
+        if (auto status = findTilts(); !status) return status;
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
         if (auto status = dispatch(filterPass, false, probe, 0, "surface filter", filtered); !status) return status;
     if (auto status = gatherCells(); !status) return status;
-    return gpu->download(filtered, 0, std::as_writable_bytes(found));
+    if (auto status = gpu->download(filtered, 0, std::as_writable_bytes(found)); !status || !directions()) return status;
+    std::vector<uint32_t> halves(texels());
+    if (auto status = gpu->download(tilted, 0, std::as_writable_bytes(std::span(halves))); !status) return status;
+    const std::span<uint32_t> packed = found.subspan(texels(), (texels() + 1) / 2);
+    std::ranges::fill(packed, 0u);
+    for (size_t i = 0; i < halves.size(); ++i) packed[i / 2] |= halves[i] << (16 * (i & 1));
+    return success();
 }
 
 } // namespace sconce

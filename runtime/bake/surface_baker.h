@@ -46,15 +46,20 @@ private:
     Status gatherCells();
     Status dispatch(const Pipeline& pipeline, bool withScene, uint32_t probe, uint32_t rays, const char* name, const Buffer& written);
     gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
-    size_t words() const { return texelsOfProbe() * field.info().probeCount + cellWords(field.info()); }
+    Status findTilts();
+    Status upload(uint32_t probe);
+    bool directions() const { return field.info().surfaceDirections != 0; }
+    size_t words() const { return surfaceTexelWords(field.info()) + cellWords(field.info()); }
+    size_t texels() const { return texelsOfProbe() * field.info().probeCount; }
     size_t texelsOfProbe() const { return size_t(6) * field.info().surfaceSize * field.info().surfaceSize; }
 
     Gpu* gpu;
     const DeviceScene* scene;
     LightField field;
     Desc desc;
-    Pipeline gatherPass, bouncePass, filterPass, cellPass;
+    Pipeline gatherPass, bouncePass, tiltPass, filterPass, cellPass;
     Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
+    Buffer tilts, tilted;                                                     // the same, where the field has directions
     std::vector<uint32_t> links;                                              // [probe][ray][texel]
     bool lit = false;                                                         // the light without a bounce is made
 };

@@ -61,14 +61,15 @@ uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels
     return chart == gpu::kChartCube ? std::min(surfaceTexels, faceSize) : 0;
 }
 
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels)
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels, bool directions)
 {
     const uint32_t size = chartSize(chart, resolution), surface = surfaceSizeOf(chart, size, surfaceTexels);
     const size_t words =
         size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
     const size_t patches = chart == gpu::kChartCube && surface == 0 ? size_t(2) * gpu::kPatches : 0;
     const size_t cells = surface > 0 ? gpu::kCellWords * kCellsOfProbe : 0;
-    return (words + patches + size_t(6) * surface * surface + cells) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+    const size_t texels = size_t(6) * surface * surface, tilts = directions ? texels / 2 : 0;
+    return (words + patches + texels + tilts + cells) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
 }
 
 glm::ivec3 lightCells(const gpu::LightFieldInfo& info)
@@ -84,6 +85,12 @@ int cellShiftOf(const gpu::LightFieldInfo& info)
     for (finer.cellShift = 1; finer.cellShift < 15 && cellWords(finer) > gpu::kCellWords * kCellsOfProbe * info.probeCount;)
         ++finer.cellShift;
     return finer.cellShift;
+}
+
+size_t surfaceTexelWords(const gpu::LightFieldInfo& info)
+{
+    const size_t texels = size_t(6) * info.surfaceSize * info.surfaceSize * info.probeCount;
+    return texels + (info.surfaceDirections != 0 ? (texels + 1) / 2 : 0);
 }
 
 size_t cellWords(const gpu::LightFieldInfo& info)

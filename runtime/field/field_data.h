@@ -61,7 +61,8 @@ uint32_t chartSize(uint32_t chart, uint32_t resolution);
 
 /// Bytes that every further probe adds to a light field at most, index apart: what a budget of memory is divided by.
 /// @param surfaceTexels  BakeSettings::surfaceTexels
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value);
+/// @param directions     whether the scene has normal textures
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value, bool directions = false);
 
 /// Texels a side of a face of the surface light that a bake makes, where so many are asked for; 0 with octahedral maps.
 uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels);
@@ -70,7 +71,9 @@ uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels
 glm::ivec3 lightCells(const gpu::LightFieldInfo& info);
 /// LightFieldInfo::cellShift of a new field: the finest cells, of two voxels or more, that there are at most 512 of for a probe.
 int cellShiftOf(const gpu::LightFieldInfo& info);
-/// Words of FieldData::surfaceLight that the cells take, after the texels of all probes; 0 without surface light.
+/// Words of FieldData::surfaceLight that the texels of all probes take: their light, then their tilts where the field has directions.
+size_t surfaceTexelWords(const gpu::LightFieldInfo& info);
+/// Those that the cells take after them; 0 without surface light.
 size_t cellWords(const gpu::LightFieldInfo& info);
 
 } // namespace sconce

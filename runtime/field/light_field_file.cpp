@@ -153,13 +153,15 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         return fmt::format("its map size {} is not a multiple of 4 from 8 to 4096", i.faceSize);
     if (i.surfaceSize > i.faceSize || (i.surfaceSize > 0 && i.chart != gpu::kChartCube))
         return fmt::format("its surface light of {} texels a side does not fit its maps", i.surfaceSize);
+    if (i.surfaceDirections > 1) return fmt::format("its surface light's directions are {}, not 0 or 1", i.surfaceDirections);
     if (i.probeCount > kMostProbes) return fmt::format("its probe count {} is above {}", i.probeCount, kMostProbes);
     if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize)) return "its words per probe disagree with its map size";
     if (i.chart == gpu::kChartCube && i.topLevel != coarsestLevel(i.faceSize)) return "its coarsest level disagrees with its map size";
     if (tree.marker != kMostProbesOf8Bits && tree.marker != kMostProbes)
         return fmt::format("its octree's marker {} is neither 255 nor 65535", tree.marker);
     const uint64_t n = i.probeCount;
-    const std::optional<uint64_t> texels = product({n, 6, i.surfaceSize, i.surfaceSize});
+    std::optional<uint64_t> texels = product({n, 6, i.surfaceSize, i.surfaceSize});
+    if (texels && i.surfaceDirections != 0) *texels += (*texels + 1) / 2; // at most 2^53 before
     const std::optional<uint64_t> cells = i.surfaceSize > 0 ? wordsOfCells(tree, i.cellShift) : 0;
     const std::optional<uint64_t> expected[sectionCount] = {
         rawBytes[meta],

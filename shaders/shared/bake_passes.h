@@ -67,13 +67,16 @@ struct SurfacePush
     SCONCE_ADDRESS(BakeWords) links;      // of this probe, [ray][texel]
     SCONCE_ADDRESS(BakeWords) sentBefore; // of all probes: radiance that each texel sends, RGB9E5
     SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter and of cells, the surface light
+    SCONCE_ADDRESS(SurfaceFloats) tilts;  // of all probes: moment along the plane of the luminance straight from emitters and sky, and of all; none: 0
+    SCONCE_ADDRESS(BakeWords) tilted;     // of all probes: of the filter, packTilt() of a texel
     uint probe;
     uint rays;       // a texel
     uint shadowRays; // a texel, to emitters
     float offset;    // field units that a ray starts off its surface
 };
-SCONCE_CHECK_SIZE(SurfacePush, 64);
+SCONCE_CHECK_SIZE(SurfacePush, 80);
 const uint kMostShadowRays = 32u;
+const float kMostSlope = 5.0f; // tangent of a ray's angle to the normal that a tilt's moment counts
 const uint kCellGroup = 64u; // facings of cells a workgroup of cell_gather.comp
 
 SCONCE_STRUCTS_END

@@ -16,12 +16,15 @@ SCONCE_FN ivec3 lightCells()
                  ((field.topCells.z << field.topShift) + more) >> field.cellShift);
 }
 
+/// Texels of all probes.
+SCONCE_FN uint surfaceTexels() { return field.probeCount * 6u * field.surfaceSize * field.surfaceSize; }
+
 /// Index of a cell's first word.
 SCONCE_FN uint cellWords(ivec3 cell)
 {
     ivec3 count = lightCells();
-    return field.probeCount * 6u * field.surfaceSize * field.surfaceSize +
-           kCellWords * uint(cell.x + count.x * (cell.y + count.y * cell.z));
+    uint tilts = field.surfaceDirections != 0u ? (surfaceTexels() + 1u) / 2u : 0u; // surface_light.h
+    return surfaceTexels() + tilts + kCellWords * uint(cell.x + count.x * (cell.y + count.y * cell.z));
 }
 
 /// Where in the field a cell's light was gathered.

@@ -63,11 +63,11 @@ struct LightFieldInfo
     vec3 gridStep;   // field units
     int cellShift;   // a cell of light in the open is 2^cellShift finest voxels wide: light_cells.h
     vec3 sky;        // radiance where nothing is hit, W/(m^2 sr)
-    float unused2;
+    uint surfaceDirections; // 1: surface light knows how it changes with the normal; 0: it doesn't
     vec3 sceneLow;   // field space: the scene's bounds
-    float unused3;
+    float unused2;
     vec3 sceneHigh;
-    float unused4;
+    float unused3;
 };
 SCONCE_CHECK_SIZE(LightFieldInfo, 192);
 

@@ -7,6 +7,9 @@
 // and so behind a thin wall.) The value is the mean of the radiance that arrives there, weighted
 // by the cosine (irradiance / pi), of emitters, sky and all that surfaces scatter; what a host's point, spot and directional lights give
 // directly is left out, since it is the host's to draw. RGB9E5; 0: it is sky, or its light is not known.
+//
+// Where the scene has normal textures (`surfaceDirections`), a texel's light is that on its plane, and 16 bits more tell its tilt: how it grows where
+// the normal leans over, the first moment of the light along the plane over the light itself, two to a word after all texels' light.
 
 // A texel lights a point that lies on its surface: within the chord of a curve as bent as the two normals are apart, and some slack.
 SCONCE_CONST real kSurfaceSlack = real(0.05);  // of the distance to the texel's point, and of its width
@@ -18,6 +21,8 @@ SCONCE_CONST int kNearestReach = 2;            // texels to either side that the
 SCONCE_CONST real kNearestBend = real(0.5);
 SCONCE_CONST real kNearestWidths = real(3.0);
 SCONCE_CONST uint kNoTexel = 0xffffffffu;
+SCONCE_CONST real kMostTilt = real(2.0);      // that is stored
+SCONCE_CONST real kMostBent = real(2.5);      // times a plane's light that a bent normal may get
 SCONCE_CONST uint kBlackWord = 0x08000000u; // no light that is known: 0 with another exponent
 
 struct SurfacePoint
@@ -96,9 +101,40 @@ SCONCE_FN uint packKnownLight(vec3 light)
     return word == 0u ? kBlackWord : word;
 }
 
-/// Sum of the four taps about a point that lie on its surface, and of their weights, bilinear. Cost: 8 reads.
-/// @param point  relative to the probe's centre
-SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
+/// A vector along a plane, in axes that the plane's normal alone decides.
+SCONCE_PURE vec2 alongPlane(vec3 v, vec3 normal)
+{
+    vec3 side = abs(normal.x) < real(0.6) ? vec3(real(1.0), real(0.0), real(0.0)) : vec3(real(0.0), real(1.0), real(0.0));
+    vec3 first = normalize(cross(normal, side));
+    return vec2(dot(v, first), dot(v, cross(normal, first)));
+}
+
+SCONCE_PURE uint packTilt(vec2 tilt)
+{
+    real x = clamp(tilt.x / kMostTilt, real(-1.0), real(1.0));
+    real y = clamp(tilt.y / kMostTilt, real(-1.0), real(1.0));
+    return uint(int(floor(x * real(127.0) + real(127.5)))) | (uint(int(floor(y * real(127.0) + real(127.5)))) << 8);
+}
+
+SCONCE_PURE vec2 unpackTilt(uint bits)
+{
+    return vec2(real(bits & 255u) - real(127.0), real((bits >> 8) & 255u) - real(127.0)) * (kMostTilt / real(127.0));
+}
+
+/// Light that a normal bent off a texel's plane, by a texture say, gets, over that of the plane. The hemisphere above the plane is cut off by another at
+/// that angle, which of even light leaves (1 + cos) / 2; what more comes from one side is linear in the normal.
+SCONCE_PURE real lightOfBent(vec3 normal, vec3 plane, vec2 tilt)
+{
+    real share = real(0.5) + real(0.5) * dot(normal, plane) + dot(tilt, alongPlane(normal, plane));
+    return clamp(share, real(0.0), kMostBent);
+}
+
+SCONCE_FN vec2 tiltOf(uint texel) { return unpackTilt(surfaceWord(surfaceTexels() + texel / 2u) >> (16u * (texel & 1u))); }
+
+/// Sum of the four taps about a point that lie on its surface, and of their weights, bilinear. Cost: 8 reads, 12 with directions.
+/// @param point   relative to the probe's centre
+/// @param normal  that the light falls on; `facing`: of the surface
+SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal, vec3 facing)
 {
     int face = dominantFace(point);
     vec3 uvw = faceCoordinates(face, point);
@@ -118,10 +154,13 @@ SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal)
         int y = y0 + (tap >> 1);
         real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
         SurfacePoint texel = surfacePointAt(probe, face, x, y);
-        if (!isSameSurface(point, normal, texel, kSurfaceBend)) continue;
-        uint word = surfaceWord(surfaceIndex(probe, face, x, y));
+        if (!isSameSurface(point, facing, texel, kSurfaceBend)) continue;
+        uint index = surfaceIndex(probe, face, x, y);
+        uint word = surfaceWord(index);
         if (word == 0u) continue;
-        sum += weight * vec4(unpackSharedExponent(word), real(1.0));
+        vec3 light = unpackSharedExponent(word);
+        if (field.surfaceDirections != 0u) light *= lightOfBent(normal, texel.normal, tiltOf(index));
+        sum += weight * vec4(light, real(1.0));
     }
     return sum;
 }
@@ -201,7 +240,7 @@ SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 facing, vec3
         density[which] = real(0.0);
         vec3 fromProbe = point - vec3(probeHeader(probe).centre);
         if (!isSeenBy(probe, fromProbe, facing)) continue;
-        vec4 taps = surfaceTaps(probe, fromProbe, facing);
+        vec4 taps = surfaceTaps(probe, fromProbe, normal, facing);
         if (taps.w > kSurfaceLeast)
         {
             sum += most * taps;

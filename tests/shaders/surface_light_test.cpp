@@ -1,4 +1,5 @@
 // Surface light of the shared text, on fields whose light is known at every point.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -147,6 +148,18 @@ TEST(SurfaceLight, WhatNoProbeSeesHasTheLightOfTheCellsInTheOpen)
         EXPECT_EQ(found.probes, -1);
         EXPECT_NEAR(found.light.g, light, 0.01f);
     }
+}
+
+TEST(SurfaceLight, TiltsComeBackWithinHalfAStep)
+{
+    for (float x = -2.4f; x <= 2.4f; x += 0.3f)
+        for (float y = -2.0f; y <= 2.0f; y += 0.25f)
+        {
+            const vec2 found = Text::unpackTilt(Text::packTilt(vec2(x, y)));
+            EXPECT_NEAR(found.x, std::clamp(x, -2.0f, 2.0f), 1.001f / 127.0f);
+            EXPECT_NEAR(found.y, std::clamp(y, -2.0f, 2.0f), 1.001f / 127.0f);
+        }
+    EXPECT_EQ(Text::unpackTilt(Text::packTilt(vec2(0.0f))), vec2(0.0f)) << "even light has none";
 }
 
 TEST(SurfaceLight, PointsThatAreNoneAreBlack)

@@ -181,6 +181,44 @@ TEST_F(SurfaceBake, BelowALampIsTheLampsFormFactor)
     EXPECT_NEAR(found.light.g, 2.0 * 4.0 * corner, 0.02 * 8.0 * corner);
 }
 
+// At the foot of a black wall half of the sky is left, on one side. A normal that leans towards it by an angle t gets (cos t + sin t) / 2
+// of the sky, one that leans to the wall (1 - sin t) / 2, and one along the wall (1 + cos t) / 4: lunes of the sphere. What is linear in
+// the normal is off by 5 and 13 % there.
+TEST_F(SurfaceBake, NormalsThatLeanFromAWallGetMoreOfTheSky)
+{
+    Scene scene;
+    scene.sky = vec3(1.0f);
+    MeshBuilder mesh(scene);
+    const uint32_t black = mesh.material("black", vec3(0.0f), 1.0f);
+    mesh.box(vec3(-3.0f, -0.2f, -20.0f), vec3(0.0f, 0.0f, 20.0f), black);
+    mesh.box(vec3(0.0f, -0.2f, -20.0f), vec3(0.3f, 20.0f, 20.0f), black);
+    scene.images.push_back({"flat", 1, 1, {128, 128, 255, 255}});
+    const std::vector<vec3> probes{vec3(-1.0f, 1.2f, 0.1f), vec3(-0.8f, 0.9f, -0.3f)};
+    const auto lightOf = [&](const FieldData& field, vec3 leaning)
+    {
+        Text text(field, {});
+        const vec3 p = (vec3(-0.4f, 0.0f, 0.0f) - field.info.origin) / field.info.scale;
+        int reads = 0;
+        const auto found =
+            text.surfaceLightAt(p, glm::normalize(leaning), vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads);
+        EXPECT_EQ(found.probes, 2);
+        return double(found.light.g);
+    };
+    const FieldData without = bake(scene, probes, 0, 52);
+    EXPECT_EQ(without.info.surfaceDirections, 0u);
+    EXPECT_EQ(lightOf(without, {-1, 2, 0}), lightOf(without, {0, 1, 0})) << "no texture bends normals: what they get isn't kept";
+    scene.materials[black].normalTexture.image = 0;
+    const FieldData field = bake(scene, probes, 0, 52);
+    ASSERT_EQ(field.info.surfaceDirections, 1u);
+    EXPECT_EQ(field.surfaceLight.size() - without.surfaceLight.size(), size_t(6) * 52 * 52); // two texels a word, two probes
+    const double t = std::numbers::pi / 6, s = std::sin(t), c = std::cos(t), half = lightOf(field, {0, 1, 0});
+    EXPECT_NEAR(half, 0.5, 0.02);
+    EXPECT_NEAR(lightOf(field, {-s, c, 0}), (c + s) / 2, 0.07 * (c + s) / 2);
+    EXPECT_NEAR(lightOf(field, {s, c, 0}), (1 - s) / 2, 0.2 * (1 - s) / 2);
+    EXPECT_NEAR(lightOf(field, {0, c, s}), (1 + c) / 4, 0.05 * (1 + c) / 4);
+    EXPECT_NEAR(lightOf(field, {0, c, -s}), (1 + c) / 4, 0.05 * (1 + c) / 4);
+}
+
 // A globe sends light by its outside alone: shadows that let its far side through made it twice as bright.
 TEST_F(SurfaceBake, AGlobeOfACentimetreIsNoBrighterThanItsOutside)
 {
@@ -193,7 +231,8 @@ TEST_F(SurfaceBake, AGlobeOfACentimetreIsNoBrighterThanItsOutside)
     Text text(field, {});
     const vec3 p = (vec3(0.0f) - field.info.origin) / field.info.scale;
     int reads = 0;
-    const double arriving = text.surfaceLightAt(p, vec3(0, 1, 0), vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads).light.g;
+    const double arriving =
+        text.surfaceLightAt(p, vec3(0, 1, 0), vec3(0, 1, 0), p + vec3(0.0f, 0.5f * field.info.voxel, 0.0f), reads).light.g;
     EXPECT_NEAR(arriving, 1000.0 * kRadius * kRadius, 0.03 * 1000.0 * kRadius * kRadius); // a disc of its radius, 1 m off
 }
 

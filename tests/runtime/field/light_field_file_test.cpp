@@ -78,7 +78,8 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
     {
         field.info.surfaceSize = 4;
         field.info.cellShift = 3;
-        field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 + cellWords(field.info));
+        field.info.surfaceDirections = 1;
+        field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 * 3 / 2 + cellWords(field.info));
     }
     for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches, &field.surfaceLight})
         for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
