@@ -651,11 +651,12 @@ inline constexpr Knob<uint64_t> pathSeed{.name = "seed",
                                          .least = 0,
                                          .most = kMost64,
                                          .what = "Of the paths; the same seed gives the same bytes"};
-inline constexpr Knob<bool> pixelCentre{.name = "pixelCentre",
-                                        .option = "reference --pixel-centre",
-                                        .member = "ReferenceSettings::pixelCentre",
-                                        .value = false,
-                                        .what = "Every path starts at its pixel's centre as a rasteriser's: edges aren't smoothed, textures are"};
+inline constexpr Knob<bool> pixelCentre{
+    .name = "pixelCentre",
+    .option = "reference --pixel-centre",
+    .member = "ReferenceSettings::pixelCentre",
+    .value = false,
+    .what = "Every path starts at its pixel's centre as a rasteriser's: edges aren't smoothed, textures are"};
 inline constexpr Knob<bool> parts{.name = "parts",
                                   .option = "reference --parts",
                                   .member = "ReferenceSettings::parts",

@@ -54,26 +54,17 @@ void main()
     TangentFrame tangents = tangentFrame(axis);
     uvec2 pixel = uvec2(index / 6u, facing);
     vec3 sky = vec3(0.0), sum = vec3(0.0);
-    float ended = 0.0, surfaces = 0.0, known = 0.0;
+    Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.rays; ++i)
     {
         float t;
         uint link = endOfRay(point, gatherDirection(tangents, pixel, i), vec3(0.0), pairOfRay(pixel, i, kLinkStream), t);
-        if (link == kLinkNone) continue;
-        ended += 1.0;
-        if (link == kLinkSky)
-        {
-            sky += field.sky;
-            continue;
-        }
-        surfaces += 1.0;
-        if (link == kLinkSurface) continue;
-        known += 1.0;
-        sum += unpackSharedExponent(push.sentBefore.word[link]);
+        if (link == kLinkSky) sky += field.sky;
+        if (countEnd(ends, link)) sum += unpackSharedExponent(push.sentBefore.word[link]);
     }
-    vec3 light = (sky + sum / max(known, 1.0) * surfaces) / max(ended, 1.0);
+    vec3 light = sky / max(ends.all, 1.0) + perRay(ends) * sum;
     float variance;
     vec3 tilt;
     if (lightsHeader.emitterCount > 0u) light += emittersAt(point, axis, axis, pixel, variance, tilt);
-    push.sent.word[first + facing] = ended - surfaces + known < kLeastKnown * float(push.rays) ? 0u : packKnownLight(light);
+    push.sent.word[first + facing] = ends.all - ends.surfaces + ends.known < kLeastKnown * float(push.rays) ? 0u : packKnownLight(light);
 }

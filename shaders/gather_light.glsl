@@ -18,7 +18,7 @@ struct Heaviest
     vec4 weight;
     float next;
 };
-const int kRoughProbes = 4; // that a rough reflection asks; at most 4
+const int kRoughProbes = 2; // that a rough reflection asks; at most 4
 const float kWidestLobe = 0.8;      // radians: as reflectedLobe()'s
 const float kMostOfSurface = 2.0;
 
@@ -36,12 +36,10 @@ void weigh(inout Heaviest h, uint probe, float weight)
 
 /// What a probe's light is to be scaled by, for shadows and near surfaces that it doesn't know: by the light at the surface over what the probe has
 /// for it, as Lazarov 2013, "Getting More Physical in Call of Duty: Black Ops II", scales environment maps by lightmaps.
-/// @param own    light at the surface, and where it is from: SurfaceLight
 /// @param above  what the probes have in the hemisphere above it
-vec3 shareOfSurface(vec4 own, vec3 above)
+vec3 shareOfSurface(vec3 own, vec3 above)
 {
-    if (own.a < -1.5) return vec3(1.0); // it is from the probes, and not all of it
-    return min(own.rgb / max(above, vec3(1e-20)), vec3(kMostOfSurface));
+    return min(own / max(above, vec3(1e-20)), vec3(kMostOfSurface));
 }
 
 void main()
@@ -102,7 +100,7 @@ void main()
         }
         weights += weight;
     }
-    if (kBySurface) inLobe *= shareOfSurface(imageLoad(diffuse, at), above / weights);
+    if (kBySurface) inLobe *= shareOfSurface(imageLoad(diffuse, at).rgb, above / weights);
     // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
     imageStore(rough, at, vec4(inLobe / weights * specularColor(lobesAt(p.brdf, dot(p.normal, p.view))), 1.0));
 }

@@ -27,7 +27,8 @@ void main()
     uvec2 pixel = pixelOfTexel(texel);
     TangentFrame tangents = tangentFrame(normal);
     vec3 sky = vec3(0.0), slopes = vec3(0.0);
-    float known = 0.0, ended = 0.0, asked = 0.0, nearby = 0.0, nearness = 0.0;
+    float asked = 0.0, nearby = 0.0, nearness = 0.0;
+    Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.rays; ++i)
     {
         vec3 direction = gatherDirection(tangents, pixel, i);
@@ -48,16 +49,15 @@ void main()
             nearness += 1.0 / max(t, 1e-6);
         }
         push.links.word[i * texelsOfProbe() + ofProbe] = link;
-        if (link != kLinkNone && link != kLinkSurface) known += 1.0;
-        if (link != kLinkNone) ended += 1.0;
+        countEnd(ends, link);
         if (link != kLinkSky) continue;
         sky += field.sky;
         slopes += slopeOf(direction, normal);
     }
-    vec3 light = sky / max(ended, 1.0);
+    vec3 light = sky / max(ends.all, 1.0);
     float luminousSky = luminance(field.sky), variance = 0.0;
-    if (luminousSky > 0.0) variance = luminousSky * luminousSky * varianceOfShare(luminance(sky) / luminousSky, ended);
-    vec3 tilt = luminousSky * slopes / max(ended, 1.0);
+    if (luminousSky > 0.0) variance = luminousSky * luminousSky * varianceOfShare(luminance(sky) / luminousSky, ends.all);
+    vec3 tilt = luminousSky * slopes / max(ends.all, 1.0);
     if (lightsHeader.emitterCount > 0u)
     {
         float ofEmitters;
@@ -68,5 +68,6 @@ void main()
     }
     push.light.value[index].w = variance;
     if (field.surfaceDirections != 0u) push.tilts.value[index] = vec4(alongPlane(tilt, normal), vec2(0.0));
+    float known = ends.all - ends.surfaces + ends.known;
     push.first.value[index] = vec4(light, known < kLeastKnown * asked || nearby > kMostNearby * asked ? kNotKnown : float(push.rays) / max(nearness, 1e-6));
 }

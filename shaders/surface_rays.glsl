@@ -1,6 +1,6 @@
 // Rays that gather light at a place through the light field: what they end at, and what emitters give. After the light field and `push`, a SurfacePush.
 #include "lights.glsl"
-#include "gather_direction.glsl"
+#include "gathered_rays.glsl"
 
 const float kLeastKnown = 0.5; // share of the rays whose end must be known
 const uint kShadowStream = 7u, kLinkStream = 8u;

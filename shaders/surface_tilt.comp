@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "light_field.glsl"
 #include "surface_texels.glsl"
-#include "gather_direction.glsl"
+#include "gathered_rays.glsl"
 
 // Bake: from which side the light of a probe's texels comes, after the last bounce: as surface_bounce.comp, by the same rays, each by the slope of its
 // direction.
@@ -17,19 +17,15 @@ void main()
     SurfacePoint surface = surfacePointAt(push.probe, int(texel.z), int(texel.x), int(texel.y));
     vec3 normal = normalOfTexel(index, surface), sum = vec3(0.0);
     TangentFrame tangents = tangentFrame(normal);
-    float ended = 0.0, surfaces = 0.0, known = 0.0;
+    Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint link = push.links.word[i * texelsOfProbe() + ofProbe];
-        if (link == kLinkNone) continue;
-        ended += 1.0;
-        if (link == kLinkSky) continue;
-        surfaces += 1.0;
-        if (link == kLinkSurface) continue;
-        known += 1.0;
-        sum += luminance(unpackSharedExponent(push.sentBefore.word[link])) * slopeOf(gatherDirection(tangents, pixelOfTexel(texel), i), normal);
+        if (!countEnd(ends, link)) continue;
+        vec3 slope = slopeOf(gatherDirection(tangents, pixelOfTexel(texel), i), normal);
+        sum += luminance(unpackSharedExponent(push.sentBefore.word[link])) * slope;
     }
     vec4 tilt = push.tilts.value[index];
-    tilt.zw = tilt.xy + alongPlane(sum, normal) / max(known, 1.0) * (surfaces / max(ended, 1.0));
+    tilt.zw = tilt.xy + perRay(ends) * alongPlane(sum, normal);
     push.tilts.value[index] = tilt;
 }

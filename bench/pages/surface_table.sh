@@ -2,7 +2,7 @@
 # Diffuse light read at surfaces against what it replaced, the probes' irradiance with shadowed samples and a filter: errors, mean and time of a
 # frame, bake time and bytes. Prints the rows of bench/results/surface_light.json.
 # surface_table.sh [SCENE[=COUNT]...] as bench/pages/effects_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180],
-# FRAMES=N timed, the median counts [5], RESOLUTION=texels [256], SPP=paths a pixel [512], OUT=folder, whose references are kept [out/surfaces].
+# FRAMES=N timed, the median counts [5], RESOLUTION=texels [256], SPP=paths a pixel [512; Sponza, four times as many], OUT=folder, whose references are kept [out/surfaces].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 scenes=${SCONCE_SCENES:-../shared/scenes}
@@ -16,10 +16,15 @@ for entry in "${list[@]}"; do
     scene=${entry%%=*} count=${entry#*=} camera=()
     name=$(basename "${scene%.gl*}")
     [[ -f $scenes/$scene ]] && scene=$scenes/$scene
-    [[ $name == modern_hall ]] && camera=(--eye 5.59993,1.5,3.76821 --target 4.69671,1.50938,3.34018 --fov 75) # the first of its suggested views
-    at=$out/$name
+    case $name in # of the scenes' suggested views
+        modern_hall) camera=(--eye 5.59993,1.5,3.76821 --target 4.69671,1.50938,3.34018 --fov 75) ;;
+        zdm2) camera=(--eye=-31.6977,11.2,3.78408 --target=-30.7396,11.2344,4.04664 --fov 75) ;;
+        san_miguel) camera=(--eye=-13.714,1.57212,-9.35007 --target=-13.3374,1.58774,-8.42514 --fov 75) ;; # its court
+    esac
+    at=$out/$name paths=$spp
+    [[ $name == Sponza ]] && paths=$((4 * spp)) # dark and lit by little of the sky: noisy
     "$sconce" place "$scene" --count "$count" -o "$at.probes.json" --quiet > /dev/null
-    [[ -f $at.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --size "$size" --spp "$spp" --bounces 8 --pixel-centre -o "$at.ref.exr" --quiet > /dev/null
+    [[ -f $at.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --size "$size" --spp "$paths" --bounces 8 --pixel-centre -o "$at.ref.exr" --quiet > /dev/null
     for texels in 0 52; do
         "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --bounces 8 --surface-texels $texels --effects all -o "$at.sconce" --json --quiet > "$at.$texels.bake.json"
         "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" -o "$at.$texels.exr" --json --quiet > "$at.$texels.json"

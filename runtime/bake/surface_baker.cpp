@@ -43,10 +43,11 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
          {Need{first, texels() * 16, "first light at surfaces"}, Need{light, texels() * 16, "light at surfaces"},
           Need{sent, texels() * 4, "light that surfaces send"}, Need{sentBefore, texels() * 4, "light that surfaces sent"},
           Need{filtered, words() * 4, "filtered light at surfaces"},
-          Need{tilts, directions() ? texels() * 16 : 16, "tilts of light at surfaces"},
-          Need{tilted, directions() ? texels() * 4 : 4, "filtered tilts of light at surfaces"},
+          Need{tilts, directions() ? texels() * 16 : 0, "tilts of light at surfaces"},
+          Need{tilted, directions() ? texels() * 4 : 0, "filtered tilts of light at surfaces"},
           Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
     {
+        if (need.bytes == 0) continue;
         auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
         if (!buffer) return buffer.error();
         need.buffer = std::move(*buffer);
@@ -69,8 +70,8 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     auto cleared = gpu->submit(
         [&](VkCommandBuffer cmd)
         {
-            for (const Buffer* buffer : {&first, &light, &sentBefore, &tilts})
-                gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+            for (const Buffer* buffer : {&first, &light, &sentBefore}) gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+            if (directions()) gpu->vk.CmdFillBuffer(cmd, tilts.handle(), 0, VK_WHOLE_SIZE, 0);
         });
     if (!cleared) return cleared;
     return gpu->upload(sent, 0, std::as_bytes(std::span(direct)));
@@ -83,8 +84,8 @@ gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
     push.first = first.address();
     push.light = light.address();
     push.links = linkBuffer.address();
-    push.tilts = tilts.address();
-    push.tilted = tilted.address();
+    push.tilts = directions() ? tilts.address() : 0;
+    push.tilted = directions() ? tilted.address() : 0;
     push.sentBefore = sentBefore.address();
     push.sent = sent.address();
     push.probe = probe;
@@ -94,20 +95,18 @@ gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
     return push;
 }
 
-Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, uint32_t probe, uint32_t rays, const char* name,
-                              const Buffer& written)
+Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name,
+                              const Buffer* floats)
 {
     return gpu->submit(
         [&](VkCommandBuffer cmd)
         {
             const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
             pipeline.bind(cmd, std::span(sets).first(withScene ? 2 : 1));
-            gpu::SurfacePush push = pushFor(probe, rays);
-            if (&written == &filtered) push.sent = filtered.address();
             pipeline.push(cmd, push);
             const uint32_t groups = (field.info().surfaceSize + 7) / 8;
             gpu->vk.CmdDispatch(cmd, groups, groups, 6);
-            if (&written != &filtered) scanBuffer(*gpu, cmd, name, written, {}); // those are words, not floats
+            if (floats) scanBuffer(*gpu, cmd, name, *floats, {});
             // For the copies out, which are of the next submit.
             memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
@@ -116,7 +115,7 @@ Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, uint32_t
 
 Status SurfaceBaker::gather(uint32_t probe)
 {
-    if (auto status = dispatch(gatherPass, true, probe, desc.rays, "surface gather", first); !status) return status;
+    if (auto status = dispatch(gatherPass, true, pushFor(probe, desc.rays), "surface gather", &first); !status) return status;
     const size_t count = texelsOfProbe() * desc.rays;
     return gpu->download(linkBuffer, 0, std::as_writable_bytes(std::span(links).subspan(probe * count, count)));
 }
@@ -135,7 +134,8 @@ Status SurfaceBaker::bounce()
     {
         if (lit)
             if (auto status = upload(probe); !status) return status;
-        if (auto status = dispatch(bouncePass, false, probe, lit ? desc.rays : 0, "surface bounce", light); !status) return status;
+        if (auto status = dispatch(bouncePass, false, pushFor(probe, lit ? desc.rays : 0), "surface bounce", &light); !status)
+            return status;
     }
     lit = true;
     return success();
@@ -181,7 +181,7 @@ Status SurfaceBaker::findTilts()
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
     {
         if (auto status = upload(probe); !status) return status;
-        if (auto status = dispatch(tiltPass, false, probe, desc.rays, "surface tilt", tilts); !status) return status;
+        if (auto status = dispatch(tiltPass, false, pushFor(probe, desc.rays), "surface tilt", &tilts); !status) return status;
     }
     return success();
 }
@@ -192,7 +192,11 @@ Status SurfaceBaker::read(std::span<uint32_t> found)
     if (directions())
         if (auto status = findTilts(); !status) return status;
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
-        if (auto status = dispatch(filterPass, false, probe, 0, "surface filter", filtered); !status) return status;
+    {
+        gpu::SurfacePush push = pushFor(probe, 0);
+        push.sent = filtered.address();
+        if (auto status = dispatch(filterPass, false, push, "surface filter", nullptr); !status) return status;
+    }
     if (auto status = gatherCells(); !status) return status;
     if (auto status = gpu->download(filtered, 0, std::as_writable_bytes(found)); !status || !directions()) return status;
     std::vector<uint32_t> halves(texels());

@@ -44,7 +44,8 @@ private:
     }
     Status make(std::span<const gpu::SurfaceTexel> texels);
     Status gatherCells();
-    Status dispatch(const Pipeline& pipeline, bool withScene, uint32_t probe, uint32_t rays, const char* name, const Buffer& written);
+    /// @param floats  what the pass writes, to be scanned for numbers that are none where that is asked for; null: it writes words
+    Status dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name, const Buffer* floats);
     gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
     Status findTilts();
     Status upload(uint32_t probe);

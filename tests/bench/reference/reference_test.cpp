@@ -58,6 +58,23 @@ TEST(Reference, SunOnAPlaneIsExact)
     }
 }
 
+// Black and white squares of 5 cm, 20 m off: a pixel's centre sees the one or the other, a pixel a mean of many, by its centre's surface
+// alone.
+TEST(Reference, PixelsCentresSeeTexturesFiltered)
+{
+    Scene scene = floorUnder(1.0f);
+    scene.sky = vec3(1.0f);
+    scene.images.push_back({"squares", 2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}});
+    scene.materials[0].baseColorTexture.image = 0;
+    for (size_t i = 0; i < scene.uvs.size(); ++i) scene.uvs[i] = 10.0f * vec2(scene.positions[i].x, scene.positions[i].z);
+    ReferenceSettings settings = view({0, 10, 20}, vec3(0.0f), 8, 256, 0.6f);
+    settings.pixelCentre = true;
+    const Reference r = render(scene, settings);
+    for (const float albedo : r.images.find("albedo")->pixels) EXPECT_NEAR(albedo, 0.5f, 0.15f); // 256 of 0 or 1: 0.03 is their deviation
+    EXPECT_NEAR(meanOf(r.images, "albedo").value, 0.5, 0.02);
+    for (const float depth : r.images.find("depth")->pixels) EXPECT_GT(depth, 0.0f);
+}
+
 TEST(Reference, PointLightFallsOffWithTheSquareAndIsShadowed)
 {
     Scene scene = floorUnder(0.5f);

@@ -193,6 +193,56 @@ TEST_F(SceneRendererTest, DiffuseLightAtSurfacesIsWhatTheTextSaysOnTheHost)
     EXPECT_LT(double(other) / double(compared), 0.01) << "where rounding falls on another side of an edge";
 }
 
+// A floor under a roof, seen by a probe in the light of a lamp above it: rough reflections had the lamp through the roof.
+TEST_F(SceneRendererTest, RoughReflectionsKnowTheShadowOfARoof)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box({-4, -0.2f, -4}, {4, 0, 4}, mesh.material("floor", vec3(0.2f), 0.8f));
+    mesh.box({-4, 1.0f, -4}, {0, 1.1f, 4}, mesh.material("roof", vec3(0.6f)));
+    mesh.quad({-2, 3, -2}, {2, 3, -2}, {2, 3, 2}, {-2, 3, 2}, mesh.emitter("lamp", vec3(5.0f)));
+    mesh.camera("under the roof", {0.5f, 0.7f, 0.2f}, {-3.0f, 0.0f, 0.0f}, 45.0f);
+    const auto field = bakeField(scene, std::vector<vec3>{{1.5f, 0.8f, 0.2f}, {2.0f, 1.5f, -1.0f}, {-0.5f, 0.4f, 0.2f}}, 128, 2, 52);
+    ASSERT_TRUE(field) << field.error().message;
+    const auto frame = drawWith(*field, scene, settingsFor());
+    ASSERT_TRUE(frame) << frame.error().message;
+    const ImageSet truth = truthOf(scene, 256);
+    double ours = 0.0, theirs = 0.0;
+    size_t shaded = 0;
+    for (size_t i = kSide * kSide / 3; i < kSide * kSide; ++i) // the floor
+    {
+        const float diffuse = truth.find("diffuse_indirect")->pixels[3 * i + 1];
+        if (!(frame->depth[i] > 2.5f)) continue; // deep under the roof
+        ++shaded;
+        ours += frame->glossyIndirect[i].g / double(kSide * kSide);
+        theirs += truth.find("glossy_indirect")->pixels[3 * i + 1] / double(kSide * kSide);
+        EXPECT_LT(diffuse, 0.1f) << "the lamp doesn't reach there";
+    }
+    EXPECT_GT(shaded, 500u);
+    RecordProperty("reflected under the roof, ours over the truth's", std::to_string(ours / theirs));
+    EXPECT_GT(ours / theirs, 0.45); // 0.55; not scaled by the light at the surface, more than 100
+    EXPECT_LT(ours / theirs, 1.3);
+}
+
+// Smooth normals bent 65 degrees off their wall, as some exporters weld them: its texels are found all the same.
+TEST_F(SceneRendererTest, NormalsFarOffTheirSurfaceDontHideItsLight)
+{
+    Scene scene = *makeBuiltinScene("cornell");
+    const float bent = glm::radians(65.0f);
+    for (vec3& normal : scene.normals)
+        if (normal.x > 0.9f) normal = vec3(std::cos(bent), 0.0f, std::sin(bent)); // the left wall, and what else faces it
+    const auto field = bakeField(scene, kCornellProbes, 128, 1, 52);
+    ASSERT_TRUE(field) << field.error().message;
+    const auto frame = drawWith(*field, scene, settingsFor());
+    ASSERT_TRUE(frame) << frame.error().message;
+    size_t bentPixels = 0, all = 0;
+    for (const vec3& normal : frame->normal) bentPixels += std::abs(normal.x - std::cos(bent)) < 0.01f && normal.z > 0.8f;
+    for (const size_t pixels : frame->diffuseFrom) all += pixels;
+    EXPECT_GT(bentPixels, 500u);
+    EXPECT_LT(frame->diffuseFrom[0] + frame->diffuseFrom[1], all / 50)
+        << "by cells or irradiance, of " << all << ", " << bentPixels << " bent";
+}
+
 TEST_F(SceneRendererTest, DiffuseLightByPatchesIsNearerToThePathTracer)
 {
     const Scene scene = *makeBuiltinScene("cornell");

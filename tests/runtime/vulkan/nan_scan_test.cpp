@@ -150,6 +150,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
 {
     const std::map<std::string_view, const char*> reasons = {
         {"The staging buffer", "a copy"},
+        {"A texture's staging buffer", "a copy"},
         {"The bake's transfer buffer", "a copy of the probe's buffers"},
         {"picture read back", "a copy of an image"},
         {"octree staging", "integers, from the host"},
@@ -170,6 +171,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"links of a probe's surfaces", "integers"},
         {"light that surfaces send", "as surface texels; the light that they are made of is scanned"},
         {"filtered light at surfaces", "as light that surfaces send"},
+        {"filtered tilts of light at surfaces", "words of 8 bits a number"},
         {"light that surfaces sent", "as light that surfaces send"},
         {"probe headers", "as distances"},
         {"rays", "from the host: the tracer answers any number"},
@@ -182,6 +184,8 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"The octree's lists", "integers"},
     };
     Scene scene = *makeBuiltinScene("cornell-glossy");
+    scene.images.push_back({"even", 1, 1, {128, 128, 255, 255}});
+    scene.materials.front().normalTexture.image = int(scene.images.size()) - 1;
     for (const LightType type : {LightType::directional, LightType::point})
     {
         Light light;
