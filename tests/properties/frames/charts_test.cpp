@@ -59,9 +59,10 @@ TEST_F(ChartsTest, TheSameProbesGiveTheSamePictureOnBothCharts)
     RecordProperty("diffuse, rough", std::to_string(diffuse) + " " + std::to_string(rough));
     RecordProperty("the same of finer faces", std::to_string(diffuseNoise) + " " + std::to_string(roughNoise));
     EXPECT_LT(diffuse, 1.5 * diffuseNoise + 0.005);
-    // SHORT: 0.070 where finer faces change 0.017. Nearly all of it lies in lines of a pixel along edges of the room and of the metal box,
-    // where a point's texel shows the other plane: there octahedral maps find another surface along the lobe.
-    EXPECT_LT(rough, 0.08) << "finer faces: " << roughNoise;
+    // SHORT: 0.084 where finer faces change 0.018; 0.070 while lobes asked four probes. Nearly all of it lies in lines of a pixel along
+    // edges of the room and of the metal box, where a point's texel shows the other plane: there octahedral maps find another surface along
+    // the lobe.
+    EXPECT_LT(rough, 0.09) << "finer faces: " << roughNoise;
 }
 
 } // namespace
