@@ -277,7 +277,7 @@ inline constexpr Knob<uint32_t> surfaceTexels{
     .only = kSurfaceTexels,
     .unit = "texels",
     .what = "Side of a cube face of the surface light, at most that of the face itself; 0: none, and none with octahedral maps",
-    .buys = "diffuse light read where surfaces are; bake time, and 24 bytes a probe times its square",
+    .buys = "diffuse light read where surfaces are; bake time, and 24 bytes a probe times its square, 36 where normals have textures",
     .readme = true};
 inline constexpr Knob<uint32_t> surfaceRays{.name = "surfaceRays",
                                             .option = "bake --surface-rays",

@@ -211,7 +211,7 @@ SCONCE_FN int largestOf(vec4 v)
 }
 
 /// Light at a surface point from what its probes see of it: of a leaf's probes the two that see most of it, and of their texels those of the same
-/// surface. Cost: about 25 reads; up to 50 more where no texel shows the point, and up to 68 where nothing
+/// surface. Cost: about 25 reads, 33 with directions; up to 50 more where no texel shows the point, and up to 68 where nothing
 /// near it does (light_cells.h).
 /// @param point   field space
 /// @param normal  unit, that the light falls on; `facing`: that of the surface, on the side that is looked at
