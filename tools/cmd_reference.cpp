@@ -63,6 +63,7 @@ struct CompareOptions
     std::string picture, reference, metrics = "mse,relmse,psnr,flip,mean", diff, sideBySide, layer = "beauty";
     std::vector<std::string> limits;
     std::optional<float> exposure;
+    bool sameSurface = false;
 };
 
 int runCompare(const CompareOptions& options, const Context& context)
@@ -70,6 +71,7 @@ int runCompare(const CompareOptions& options, const Context& context)
     CompareSettings settings;
     settings.layer = options.layer;
     settings.exposure = options.exposure;
+    settings.sameSurface = options.sameSurface;
     std::map<std::string, bool*> wanted{
         {"mse", &settings.mse}, {"relmse", &settings.relMse}, {"psnr", &settings.psnr}, {"flip", &settings.flip}, {"mean", &settings.mean}};
     // All metrics are on by default, but a list means no others.
@@ -115,6 +117,7 @@ int runCompare(const CompareOptions& options, const Context& context)
     json["height"] = result->height;
     json["layer"] = options.layer;
     json["non_finite_pixels"] = result->nonFinitePixels;
+    json["other_surface_pixels"] = result->otherSurfacePixels;
     for (const auto& [name, value] : values)
         if (value) json[name] = *value; // psnr of equal pictures is infinite: null
     if (result->relMseUnsure) json["relmse_unsure"] = *result->relMseUnsure;
@@ -181,6 +184,11 @@ void addReferenceCommands(CLI::App& app, Context& context)
                                words("from the reference's log-average, flip over a sweep of exposures"), rangeText(knobs::exposure)))
         ->check(checkOf(knobs::exposure))
         ->type_name("FACTOR");
+    compare->add_flag("--same-surface", compareOptions->sameSurface,
+                      described(fmt::format("Leave out pixels where the layer depth of both differs by over {:g} %: where they see another "
+                                            "surface, light can't be compared",
+                                            100.0f * kOtherSurface),
+                                words("all pixels count")));
     compare
         ->add_option("-o,--output", compareOptions->diff,
                      described("PNG of the error in false colours: flip, or relative error without flip", words("none")))

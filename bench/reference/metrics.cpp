@@ -41,6 +41,36 @@ std::vector<float> asRgb(const Layer& layer)
     return rgb;
 }
 
+/// Whether both pictures show the same surface, a pixel each. Errors: badInput, a picture without depth.
+Result<std::vector<bool>> sameSurfaces(const ImageSet& a, const ImageSet& reference)
+{
+    const Layer* const left = a.find("depth");
+    const Layer* const right = reference.find("depth");
+    if (!left || !right || left->pixels.size() != a.pixelCount() || right->pixels.size() != a.pixelCount())
+        return Error{ErrorCode::badInput, fmt::format("{} has no layer 'depth', which tells where both see the same surface; render it "
+                                                      "with one, or compare all pixels",
+                                                      left && left->pixels.size() == a.pixelCount() ? "the reference" : "the picture")};
+    std::vector<bool> same(a.pixelCount());
+    for (size_t p = 0; p < same.size(); ++p)
+    {
+        const float d = left->pixels[p], truth = right->pixels[p];
+        same[p] = d == truth || std::abs(d - truth) <= kOtherSurface * std::abs(truth); // equal where both are infinite, the sky
+    }
+    return same;
+}
+
+/// The values of the pixels that count.
+std::vector<float> judgedOnly(std::vector<float> rgb, const std::vector<bool>& judged)
+{
+    if (judged.empty()) return rgb;
+    size_t kept = 0;
+    for (size_t p = 0; p < judged.size(); ++p)
+        if (judged[p])
+            for (size_t i = 3 * p; i < 3 * p + 3; ++i) rgb[kept++] = rgb[i];
+    rgb.resize(kept);
+    return rgb;
+}
+
 Result<const Layer*> findLayer(const ImageSet& images, const std::string& name, const char* which)
 {
     if (const Layer* layer = images.find(name)) return layer;
@@ -121,6 +151,65 @@ double peakSignalToNoise(std::span<const float> a, std::span<const float> refere
     return 10.0 * std::log10(static_cast<double>(a.size()) / sum);
 }
 
+namespace
+{
+
+/// The metrics that are means over pixels.
+Status measureValues(CompareResult& result, const std::vector<float>& left, const std::vector<float>& right, const ImageSet& reference,
+                     const std::vector<bool>& judged, const CompareSettings& settings)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    // A mean over a pixel that is not a number is none either: said as NaN, beside how many such pixels there are.
+    const bool whole = result.nonFinitePixels == 0;
+    if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
+    if (settings.relMse) result.relMse = whole ? relativeMeanSquaredError(left, right) : nan;
+    if (settings.mean) result.mean = whole ? meanOverMean(left, right) : nan;
+    if (settings.psnr)
+        result.psnr = whole ? peakSignalToNoise(left, right, settings.exposure.value_or(autoExposure(right))) : nan;
+    std::vector<std::vector<float>> parts;
+    for (const char* name : kParts)
+        if (const Layer* part = reference.find(settings.layer + name))
+        {
+            parts.push_back(judgedOnly(asRgb(*part), judged));
+            if (parts.back().size() != left.size() || nonFinitePixels(*part) > 0)
+                return Error{ErrorCode::badInput, fmt::format("the reference's layer '{}' is damaged; render it again", part->name)};
+        }
+    if (!whole || parts.size() != std::size(kParts)) return success();
+    // Never below what is unsure of it: a difference that can't be told from none is not one below 0.
+    const Estimate square = meanSquaredError(left, parts[0], parts[1]);
+    if (settings.mse) result.mse = std::max(square.value, square.unsure);
+    const Estimate relative = relativeMeanSquaredError(left, parts[0], parts[1], parts[2]);
+    if (settings.relMse) result.relMse = std::max(relative.value, relative.unsure), result.relMseUnsure = relative.unsure;
+    return success();
+}
+
+/// FLIP and its map, or that of the relative error.
+void measureMap(CompareResult& result, const std::vector<float>& left, const std::vector<float>& right, const CompareSettings& settings)
+{
+    if (settings.flip && result.nonFinitePixels == 0)
+    {
+        // HDR-FLIP sweeps exposures of its own; where one is asked for, the picture is compared as it is shown.
+        const auto [width, height] = std::pair(result.width, result.height);
+        result.errorMap = settings.exposure ? flipLdr(toneMap(left, *settings.exposure), toneMap(right, *settings.exposure), width, height,
+                                                      settings.pixelsPerDegree)
+                                            : flipHdr(left, right, width, height, settings.pixelsPerDegree);
+        result.flip = std::accumulate(result.errorMap.begin(), result.errorMap.end(), 0.0) /
+                      static_cast<double>(result.errorMap.size() - result.otherSurfacePixels);
+        return;
+    }
+    if (settings.flip) result.flip = std::numeric_limits<double>::quiet_NaN();
+    result.errorMap.resize(left.size() / 3);
+    for (size_t p = 0; p < result.errorMap.size(); ++p)
+    {
+        double worst = 0.0;
+        for (size_t i = 3 * p; i < 3 * p + 3; ++i)
+            worst = std::max(worst, std::isfinite(left[i]) ? relativeSquare(left[i], right[i]) : 1.0);
+        result.errorMap[p] = static_cast<float>(std::min(1.0, std::sqrt(worst)));
+    }
+}
+
+} // namespace
+
 Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings)
 {
     const auto layerA = findLayer(a, settings.layer, "the picture");
@@ -139,53 +228,27 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
         return Error{ErrorCode::badInput,
                      fmt::format("the reference's layer '{}' has {} pixels that are not finite; render it again", settings.layer, bad)};
 
-    const std::vector<float> left = asRgb(**layerA), right = asRgb(**layerB);
+    std::vector<bool> judged; // empty: all pixels
+    if (settings.sameSurface)
+    {
+        auto same = sameSurfaces(a, reference);
+        if (!same) return same.error();
+        judged = std::move(*same);
+    }
     CompareResult result;
     result.width = a.width;
     result.height = a.height;
     result.nonFinitePixels = nonFinitePixels(**layerA);
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    // A mean over a pixel that is not a number is none either: said as NaN, beside how many such pixels there are.
-    const bool whole = result.nonFinitePixels == 0;
-    const float exposure = settings.exposure.value_or(autoExposure(right));
-    if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
-    if (settings.relMse) result.relMse = whole ? relativeMeanSquaredError(left, right) : nan;
-    std::vector<std::vector<float>> parts;
-    for (const char* name : kParts)
-        if (const Layer* part = reference.find(settings.layer + name))
-        {
-            parts.push_back(asRgb(*part));
-            if (parts.back().size() != left.size() || nonFinitePixels(*part) > 0)
-                return Error{ErrorCode::badInput, fmt::format("the reference's layer '{}' is damaged; render it again", part->name)};
-        }
-    if (whole && parts.size() == std::size(kParts))
-    {
-        // Never below what is unsure of it: a difference that can't be told from none is not one below 0.
-        const Estimate square = meanSquaredError(left, parts[0], parts[1]);
-        if (settings.mse) result.mse = std::max(square.value, square.unsure);
-        const Estimate relative = relativeMeanSquaredError(left, parts[0], parts[1], parts[2]);
-        if (settings.relMse) result.relMse = std::max(relative.value, relative.unsure), result.relMseUnsure = relative.unsure;
-    }
-    if (settings.mean) result.mean = whole ? meanOverMean(left, right) : nan;
-    if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, exposure) : nan;
-    if (settings.flip && whole)
-    {
-        // HDR-FLIP sweeps exposures of its own; where one is asked for, the picture is compared as it is shown.
-        result.errorMap = settings.exposure
-                              ? flipLdr(toneMap(left, exposure), toneMap(right, exposure), a.width, a.height, settings.pixelsPerDegree)
-                              : flipHdr(left, right, a.width, a.height, settings.pixelsPerDegree);
-        result.flip = std::accumulate(result.errorMap.begin(), result.errorMap.end(), 0.0) / static_cast<double>(result.errorMap.size());
-        return result;
-    }
-    if (settings.flip) result.flip = nan;
-    result.errorMap.resize(a.pixelCount());
-    for (size_t p = 0; p < result.errorMap.size(); ++p)
-    {
-        double worst = 0.0;
-        for (size_t i = 3 * p; i < 3 * p + 3; ++i)
-            worst = std::max(worst, std::isfinite(left[i]) ? relativeSquare(left[i], right[i]) : 1.0);
-        result.errorMap[p] = static_cast<float>(std::min(1.0, std::sqrt(worst)));
-    }
+    result.otherSurfacePixels = uint64_t(std::ranges::count(judged, false));
+    if (!judged.empty() && result.otherSurfacePixels == judged.size())
+        return Error{ErrorCode::badInput, "no pixel of the two pictures shows the same surface; render both with the same camera"};
+    const std::vector<float> right = asRgb(**layerB);
+    std::vector<float> left = asRgb(**layerA);
+    for (size_t p = 0; p < judged.size(); ++p) // in maps of the error, which need their neighbours
+        if (!judged[p]) std::copy_n(right.begin() + ptrdiff_t(3 * p), 3, left.begin() + ptrdiff_t(3 * p));
+    if (auto status = measureValues(result, judgedOnly(left, judged), judgedOnly(right, judged), reference, judged, settings); !status)
+        return status.error();
+    measureMap(result, left, right, settings);
     return result;
 }
 

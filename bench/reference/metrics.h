@@ -42,7 +42,9 @@ struct CompareSettings
     bool mean = true;
     std::optional<float> exposure; // set: PSNR and LDR-FLIP at it. Unset: PSNR at the reference's autoExposure, and HDR-FLIP
     float pixelsPerDegree = 67.0f; // of FLIP
+    bool sameSurface = false;      // leaves out pixels in which the two see different surfaces: by their layer `depth`, more than kOtherSurface apart
 };
+inline constexpr float kOtherSurface = 0.01f; // relative difference of depth
 
 struct CompareResult
 {
@@ -56,11 +58,13 @@ struct CompareResult
     std::optional<double> mean;         // over the reference's
     std::vector<float> errorMap;        // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
     uint64_t nonFinitePixels = 0;       // of the compared picture; any makes the metrics NaN
+    uint64_t otherSurfacePixels = 0;    // left out, see CompareSettings::sameSurface; in the map they are 0
 };
 
 /// Compares a layer of two pictures of equal size. Where the reference has the layer's parts (ReferenceSettings::parts), MSE and relMSE
 /// are without its noise, but for what that leaves unsure: they are no less. Errors: badInput names the layer, the sizes, or the
 /// reference's non-finite pixels.
+/// Surfaces differ where a blended material is there by chance, and along edges: whoever judges light alone leaves such pixels out.
 Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference, const CompareSettings& settings = {});
 
 /// The map in false colours from black over purple to yellow (magma, Smith and van der Walt 2015), as linear RGB for writePng.
