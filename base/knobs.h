@@ -288,6 +288,16 @@ inline constexpr Knob<uint32_t> surfaceRays{.name = "surfaceRays",
                                             .unit = "rays",
                                             .what = "That gather light for each texel of the surface light",
                                             .buys = "less blotchy diffuse light; bake time and 4 bytes of main memory a ray and texel"};
+inline constexpr std::string_view kGathers[] = {"triangles", "field"};
+inline constexpr Knob<std::string_view> gather{
+    .name = "gather",
+    .option = "bake --gather",
+    .member = "BakeSettings::gather",
+    .value = "triangles",
+    .only = kGathers,
+    .what = "What the rays that gather surface light meet: the scene's triangles, exactly and on the processor, or the light field on the device",
+    .buys = "no light through walls and sharper shadows; time where the device is faster than the processor",
+    .readme = true};
 inline constexpr std::string_view kCharts[] = {"cube", "octahedral"}; // in the order of gpu::kChartCube, kChartOctahedral
 inline constexpr Knob<std::string_view> chart{
     .name = "chart",

@@ -61,4 +61,7 @@ private:
     std::unique_ptr<State> state;
 };
 
+/// Half the gap by which rays must start off a surface, metres: beyond the rounding of any position in the scene.
+float rayOffset(const Scene& scene);
+
 } // namespace sconce

@@ -26,10 +26,7 @@ LightSample unshadowedLight(uint kind, uint i, vec3 p)
     s.toLight = away * inversesqrt(d2);
     if (kind == kLightEmitter)
     {
-        // A disc of the patch's area seen on its axis has exactly this form factor (Howell, "A Catalog of Radiation Heat Transfer
-        // Configuration Factors", B-12 limit), so a receiver near the patch sees no singularity.
-        float facing = -dot(s.toLight, light.direction);
-        s.irradiance *= light.area * (light.innerCone > 0.0 ? max(facing, 0.0) : abs(facing)) / (d2 + light.area / kBrdfPi);
+        s.irradiance *= patchAttenuation(-dot(s.toLight, light.direction), d2, light.area, light.area, light.innerCone > 0.0);
         return s;
     }
     s.irradiance *= distanceAttenuation(sqrt(d2), light.range);

@@ -19,7 +19,7 @@ void main()
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint link = push.links.word[i * texelsOfProbe() + ofProbe];
-        if (countEnd(ends, link)) sum += unpackSharedExponent(push.sentBefore.word[link]);
+        if (countEnd(ends, link)) sum += broughtBy(link);
     }
     vec3 light = push.first.value[index].xyz + perRay(ends) * sum;
     push.light.value[index].xyz = light;

@@ -1,41 +1,15 @@
-// Rays that gather light at a place through the light field: what they end at, and what emitters give. After the light field and `push`, a SurfacePush.
+// What shared/surface_gather.h asks, answered by rays through the light field. After the light field and `push`, a SurfacePush.
 #include "lights.glsl"
 #include "gathered_rays.glsl"
 
-const float kLeastKnown = 0.5; // share of the rays whose end must be known
-const uint kShadowStream = 7u, kLinkStream = 8u;
-
-/// A texel that shows where a ray ended, drawn among the four about it by their weights; else the nearest of the same surface; else kLinkSurface.
+/// A texel that shows where a ray ended.
 uint linkOf(TraceResult hit, float lot)
 {
     float half_ = 0.5 * float(field.faceSize);
     vec2 off = hit.pixel - floor(hit.pixel) - 0.5;
     float q = halfToReal(hit.word) * (1.0 + unpackGradient(hit.word >> 16) * off.x + unpackGradient(hit.word >> 24) * off.y);
     if (!(q > 0.0)) return kLinkSurface;
-    vec3 point = faceDirection(hit.face, vec3(hit.pixel / half_ - 1.0, 1.0)) / q;
-    vec3 normal = texelNormal(hit.face, hit.pixel, hit.word);
-    vec2 at = hit.pixel * (float(field.surfaceSize) / float(field.faceSize)) - 0.5;
-    ivec2 low = clamp(ivec2(floor(at)), ivec2(0), ivec2(int(field.surfaceSize) - 2));
-    vec2 f = clamp(at - vec2(low), vec2(0.0), vec2(1.0));
-    uint found = kLinkSurface;
-    float weights = 0.0;
-    for (int tap = 0; tap < 4; ++tap)
-    {
-        ivec2 texel = low + ivec2(tap & 1, tap >> 1);
-        float weight = ((tap & 1) != 0 ? f.x : 1.0 - f.x) * ((tap >> 1) != 0 ? f.y : 1.0 - f.y);
-        if (!(weight > 0.0) || !isSameSurface(point, normal, surfacePointAt(hit.probe, hit.face, texel.x, texel.y), kSurfaceBend)) continue;
-        weights += weight;
-        float share = weight / weights;
-        if (lot < share)
-        {
-            found = surfaceIndex(hit.probe, hit.face, texel.x, texel.y);
-            lot /= share;
-        }
-        else lot = (lot - share) / (1.0 - share);
-    }
-    if (found != kLinkSurface) return found;
-    found = nearestSurfaceTexel(hit.probe, point, normal);
-    return found == kNoTexel ? kLinkSurface : found;
+    return texelShowing(hit.probe, faceDirection(hit.face, vec3(hit.pixel / half_ - 1.0, 1.0)) / q, texelNormal(hit.face, hit.pixel, hit.word), lot);
 }
 
 const int kNearbySteps = 3;       // of a distance texel's width each
@@ -90,7 +64,7 @@ bool comesBack(vec3 point, vec3 direction, TraceResult hit)
 
 /// What a ray through the field ends at.
 /// @param lots  two even random numbers
-uint endOfRay(vec3 point, vec3 direction, vec3 normal, vec2 lots, out float t)
+uint endThroughField(vec3 point, vec3 direction, vec3 normal, vec2 lots, out float t)
 {
     TraceResult hit = traceRay(point, direction, normal);
     t = hit.t;
@@ -100,55 +74,11 @@ uint endOfRay(vec3 point, vec3 direction, vec3 normal, vec2 lots, out float t)
     return back ? linkOf(hit, lots.x) : kLinkSurface;
 }
 
-/// Variance of a share of tries that came out; as if half a try more had and half a one hadn't, since none of a few is not none of all.
-float varianceOfShare(float came, float tries)
+bool isNearPatch(float d2, float area) { return false; } // the field doesn't tell what emits
+float discOf(float area) { return area; }
+uint gatherRays() { return push.rays; }
+uint shadowRays() { return push.shadowRays; }
+bool emitterReaches(vec3 point, vec3 toLight, float distance_, vec3 plane)
 {
-    float share = (came + 0.5) / (tries + 1.0);
-    return share * (1.0 - share) / max(tries, 1.0);
+    return lightReaches(field.origin + field.scale * point, toLight, distance_ * field.scale, plane);
 }
-
-/// Mean over the hemisphere of the radiance that comes straight from emitters.
-/// @param variance  of its luminance, by chance; `tilt`: of its luminance, along the plane
-vec3 emittersAt(vec3 point, vec3 normal, vec3 geometric, uvec2 pixel, out float variance, out vec3 tilt)
-{
-    variance = 0.0;
-    tilt = vec3(0.0);
-    uint begin = lightsHeader.deltaCount, end = begin + lightsHeader.emitterCount;
-    float total = 0.0;
-    for (uint i = begin; i < end; ++i)
-    {
-        LightSample s = unshadowedLight(kLightEmitter, i, point);
-        if (dot(geometric, s.toLight) > 0.0) total += max(dot(normal, s.toLight), 0.0) * luminance(s.irradiance);
-    }
-    if (!(total > 0.0)) return vec3(0.0);
-    uint drawn[kMostShadowRays];
-    uint count = 0u;
-    float step = total / float(push.shadowRays), next = randomPair(pixel, 0u, kShadowStream, 0u).x * step, passed = 0.0;
-    for (uint i = begin; i < end; ++i)
-    {
-        LightSample s = unshadowedLight(kLightEmitter, i, point);
-        if (!(dot(geometric, s.toLight) > 0.0)) continue;
-        passed += max(dot(normal, s.toLight), 0.0) * luminance(s.irradiance);
-        for (; passed > next && count < push.shadowRays; next += step) drawn[count++] = i;
-    }
-    vec3 sum = vec3(0.0);
-    uint before = kNoProbe;
-    bool reached = false;
-    float arrived = 0.0;
-    for (uint k = 0u; k < count; ++k)
-    {
-        uint i = drawn[k];
-        LightSample s = unshadowedLight(kLightEmitter, i, point);
-        vec3 start = field.origin + field.scale * point;
-        if (i != before) reached = lightReaches(start, s.toLight, distance(lights[i].position, point) * field.scale, geometric);
-        before = i;
-        if (!reached) continue;
-        arrived += 1.0;
-        sum += s.irradiance / max(luminance(s.irradiance), 1e-30);
-        tilt += slopeOf(s.toLight, normal);
-    }
-    tilt *= step / kBrdfPi;
-    variance = total * total / (kBrdfPi * kBrdfPi) * varianceOfShare(arrived, float(count));
-    return sum * step / kBrdfPi;
-}
-

@@ -14,14 +14,10 @@ bool findTexel(out uvec3 texel, out uint ofProbe, out uint index)
     index = push.probe * 6u * side * side + ofProbe;
     return texel.x < side && texel.y < side && (push.texels.value[index].normal & kSurfaceKnown) != 0u;
 }
-/// That its random numbers are drawn by.
-uvec2 pixelOfTexel(uvec3 texel) { return texel.xy + uvec2(field.surfaceSize * texel.z, 0u); }
-
 /// That light is gathered about: where the light's direction is kept, of the plane; else the mean of its shading normals.
 vec3 normalOfTexel(uint index, SurfacePoint surface)
 {
     return field.surfaceDirections != 0u ? surface.normal : unpackNormal8(push.texels.value[index].normal);
 }
 
-const float kNotKnown = -1.0;  // in place of the rays' length: too few are
 uint texelsOfProbe() { return 6u * field.surfaceSize * field.surfaceSize; }

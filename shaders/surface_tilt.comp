@@ -23,7 +23,7 @@ void main()
         uint link = push.links.word[i * texelsOfProbe() + ofProbe];
         if (!countEnd(ends, link)) continue;
         vec3 slope = slopeOf(gatherDirection(tangents, pixelOfTexel(texel), i), normal);
-        sum += luminance(unpackSharedExponent(push.sentBefore.word[link])) * slope;
+        sum += luminance(broughtBy(link)) * slope;
     }
     vec4 tilt = push.tilts.value[index];
     tilt.zw = tilt.xy + perRay(ends) * alongPlane(sum, normal);

@@ -114,6 +114,7 @@ void addBakeCommand(CLI::App& app, Context& context)
     addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
     addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
     addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
+    addKnob(bake, "--gather", settings.gather, knobs::gather);
     addChoice(bake, "--chart", settings.chart, knobs::chart);
     addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
     bake->add_option(

@@ -67,16 +67,7 @@ Result<RayScene> RayScene::create(const Scene& scene)
 {
     Result<TriangleRays> rays = TriangleRays::build(scene);
     if (!rays) return rays.error();
-    Bounds bounds;
-    for (const uvec3& triangle : scene.triangles)
-        for (int corner = 0; corner < 3; ++corner) bounds.add(scene.positions[triangle[corner]]);
-    float offset = 0.0f;
-    if (!bounds.empty())
-    {
-        const vec3 reach = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
-        offset = 4e-6f * bounds.diagonal() + 1e-6f * std::max({reach.x, reach.y, reach.z});
-    }
-    return RayScene(std::move(*rays), offset);
+    return RayScene(std::move(*rays), rayOffset(scene));
 }
 
 std::optional<SurfaceHit> RayScene::closest(vec3 origin, vec3 direction, float tFar) const

@@ -55,7 +55,8 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
     const std::string fault =
         firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
-                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays)});
+                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays),
+                    faultOf(knobs::gather, settings.gather)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -182,7 +183,8 @@ struct Bake
     Result<LightField> asItIs(Gpu& gpu);
     Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage, Spirv shader);
     Status bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
-    Status surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
+    Status surfaceLight(Gpu& gpu, const Scene& scene, const DeviceScene& deviceScene, ProbeBaker& baker, const BakeSettings& settings,
+                        BakeReport& spent);
 };
 
 Status Bake::directLight(ProbeBaker& baker)
@@ -265,14 +267,25 @@ Status Bake::bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, 
 }
 
 /// Light at the surfaces that probes see, and the probes' radiance of it.
-Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent)
+Status Bake::surfaceLight(Gpu& gpu, const Scene& scene, const DeviceScene& deviceScene, ProbeBaker& baker, const BakeSettings& settings,
+                          BakeReport& spent)
 {
     Stopwatch watch;
     auto dark = asItIs(gpu);
     if (!dark) return dark.error();
     const uint32_t shadowRays = std::min(settings.surfaceRays, gpu::kMostShadowRays);
-    auto surfaces = SurfaceBaker::create(gpu, scene, *dark, texels,
-                                         {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal});
+    std::optional<TriangleRays> triangles;
+    std::optional<TriangleGather> exact;
+    if (settings.gather == knobs::kGathers[0])
+    {
+        auto built = TriangleRays::build(scene);
+        if (!built) return built.error();
+        triangles.emplace(std::move(*built));
+        exact.emplace(*triangles, field, texels, deviceScene.lights(), TriangleGather::Desc{settings.surfaceRays, shadowRays});
+    }
+    auto surfaces = SurfaceBaker::create(
+        gpu, deviceScene, *dark, texels,
+        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr});
     if (!surfaces) return surfaces.error();
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
@@ -399,7 +412,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
         if (settings.bounces > 0 || info.surfaceSize > 0) bake.direct = bake.field.radiance;
         spent.energy.push_back(meanRadiance(bake.field));
-        const Status bounced = info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
+        const Status bounced = info.surfaceSize > 0 ? bake.surfaceLight(**gpu, scene, *deviceScene, **baker, settings, spent)
                                                     : bake.bounces(**gpu, **baker, settings, spent);
         if (!bounced) return bounced.error();
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;

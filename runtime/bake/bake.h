@@ -25,6 +25,7 @@ struct BakeSettings
     float converged = knobs::converged.value;        // stop earlier, after a bounce that adds less than this share of all light; 0: never
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // texels a side of a cube face of the surface light; 0: none
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
+    std::string gather{knobs::gather.value};             // of knobs::kGathers: what those rays go to
     DeviceSceneDesc scene;                               // textures and lights
     std::vector<std::string> effects;                    // names of the plan's effects, kept in the file for reports
     bool radiance = true;                                // keep the maps' radiance, which traced rays need: half of the field

@@ -33,6 +33,11 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     auto known = gpu->makeBufferWith(asked, 0, "surface texels");
     if (!known) return known.error();
     texelBuffer = std::move(*known);
+    std::vector<vec4> colours(gpu::kTints, vec4(1.0f));
+    if (desc.triangles) std::ranges::transform(desc.triangles->tints(), colours.begin(), [](vec3 tint) { return vec4(tint, 0.0f); });
+    auto metals = gpu->makeBufferWith(std::span<const vec4>(colours), 0, "tints of metals");
+    if (!metals) return metals.error();
+    tints = std::move(*metals);
     struct Need
     {
         Buffer& buffer;
@@ -86,6 +91,7 @@ gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
     push.links = linkBuffer.address();
     push.tilts = directions() ? tilts.address() : 0;
     push.tilted = directions() ? tilted.address() : 0;
+    push.tints = tints.address();
     push.sentBefore = sentBefore.address();
     push.sent = sent.address();
     push.probe = probe;
@@ -113,8 +119,24 @@ Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, const gp
         });
 }
 
+Status SurfaceBaker::gatherTriangles(uint32_t probe)
+{
+    if (cells.places.empty()) cells = desc.triangles->gatherCells();
+    const size_t count = texelsOfProbe();
+    std::vector<vec4> straight(count), arriving(count), moments(directions() ? count : 0);
+    std::vector<gpu::SurfaceTexel> sending(count);
+    desc.triangles->gather(probe, {std::span(links).subspan(probe * count * desc.rays, count * desc.rays), straight, arriving, moments, sending});
+    const auto write = [&](const Buffer& buffer, const auto& values)
+    { return values.empty() ? success() : gpu->upload(buffer, probe * count * sizeof(values[0]), std::as_bytes(std::span(values))); };
+    if (auto status = write(first, straight); !status) return status;
+    if (auto status = write(light, arriving); !status) return status;
+    if (auto status = write(tilts, moments); !status) return status;
+    return write(texelBuffer, sending);
+}
+
 Status SurfaceBaker::gather(uint32_t probe)
 {
+    if (desc.triangles) return gatherTriangles(probe);
     if (auto status = dispatch(gatherPass, true, pushFor(probe, desc.rays), "surface gather", &first); !status) return status;
     const size_t count = texelsOfProbe() * desc.rays;
     return gpu->download(linkBuffer, 0, std::as_writable_bytes(std::span(links).subspan(probe * count, count)));
@@ -175,6 +197,15 @@ Status SurfaceBaker::gatherCells()
         });
 }
 
+/// The same from what rays to triangles found.
+Status SurfaceBaker::cellsFromTriangles(std::span<uint32_t> found)
+{
+    std::vector<uint32_t> before(texels());
+    if (auto status = gpu->download(sentBefore, 0, std::as_writable_bytes(std::span(before))); !status) return status;
+    desc.triangles->lightCells(cells, before, found);
+    return success();
+}
+
 /// Of the light after the last bounce.
 Status SurfaceBaker::findTilts()
 {
@@ -197,8 +228,12 @@ Status SurfaceBaker::read(std::span<uint32_t> found)
         push.sent = filtered.address();
         if (auto status = dispatch(filterPass, false, push, "surface filter", nullptr); !status) return status;
     }
-    if (auto status = gatherCells(); !status) return status;
-    if (auto status = gpu->download(filtered, 0, std::as_writable_bytes(found)); !status || !directions()) return status;
+    if (!desc.triangles)
+        if (auto status = gatherCells(); !status) return status;
+    if (auto status = gpu->download(filtered, 0, std::as_writable_bytes(found)); !status) return status;
+    if (desc.triangles)
+        if (auto status = cellsFromTriangles(found.subspan(surfaceTexelWords(field.info()))); !status) return status;
+    if (!directions()) return success();
     std::vector<uint32_t> halves(texels());
     if (auto status = gpu->download(tilted, 0, std::as_writable_bytes(std::span(halves))); !status) return status;
     const std::span<uint32_t> packed = found.subspan(texels(), (texels() + 1) / 2);

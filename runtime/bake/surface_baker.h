@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bake/triangle_gather.h"
 #include "runtime/field/light_field.h"
 #include "runtime/scene/device_scene.h"
 #include "shaders/shared/bake_passes.h"
@@ -11,7 +12,8 @@ namespace sconce
 {
 
 /// Gathers light at the surface points of all probes' texels (shaders/shared/surface_light.h), straight from emitters and sky and bounce by
-/// bounce: rays are traced through the field once, and each bounce reads what was found where they ended. Each call submits and waits.
+/// bounce: rays are traced once, through the field or to the scene's triangles, and each bounce reads what was found where they ended. Each call
+/// submits and waits.
 class SurfaceBaker
 {
 public:
@@ -19,7 +21,8 @@ public:
     {
         uint32_t rays = 0;       // a texel, to gather light
         uint32_t shadowRays = 0; // a texel, to emitters; at most gpu::kMostShadowRays
-        float offset = 0.0f;     // field units that rays start off their surface
+        float offset = 0.0f;     // field units that rays through the field start off their surface
+        const TriangleGather* triangles = nullptr; // gathers in their place, by as many rays
     };
     /// @param field   with distances, octree and surfaceSize; it is only read
     /// @param texels  of all probes, [probe][6 surfaceSize^2]
@@ -44,10 +47,12 @@ private:
     }
     Status make(std::span<const gpu::SurfaceTexel> texels);
     Status gatherCells();
+    Status cellsFromTriangles(std::span<uint32_t> words);
     /// @param floats  what the pass writes, to be scanned for numbers that are none where that is asked for; null: it writes words
     Status dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name, const Buffer* floats);
     gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
     Status findTilts();
+    Status gatherTriangles(uint32_t probe);
     Status upload(uint32_t probe);
     bool directions() const { return field.info().surfaceDirections != 0; }
     size_t words() const { return surfaceTexelWords(field.info()) + cellWords(field.info()); }
@@ -60,8 +65,10 @@ private:
     Desc desc;
     Pipeline gatherPass, bouncePass, tiltPass, filterPass, cellPass;
     Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
+    Buffer tints;
     Buffer tilts, tilted;                                                     // the same, where the field has directions
     std::vector<uint32_t> links;                                              // [probe][ray][texel]
+    TriangleGather::Cells cells; // by rays to triangles
     bool lit = false;                                                         // the light without a bounce is made
 };
 

@@ -86,8 +86,13 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
         list.lights.push_back(light);
         ++list.header.emitterCount;
     }
-    for (size_t i = first; i < list.lights.size(); ++i)
-        list.lights[i].area *= float(power / carried); // what rounding to samples took or gave
+    const double kept = power / carried; // what rounding to samples took or gave
+    for (size_t i = first; i < list.lights.size(); ++i) list.lights[i].area *= float(kept);
+    for (size_t i = 0; i < emitters.size(); ++i)
+        list.emitters.push_back({emitters[i].triangle, emitters[i].emission, float(kept * emitters[i].area / (count * emitters[i].share)),
+                                 outside[i] == Outside::both   ? 0
+                                 : outside[i] == Outside::back ? -1
+                                                               : 1});
 }
 
 /// An orthographic map of the whole scene along a light's direction.

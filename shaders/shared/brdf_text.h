@@ -145,13 +145,18 @@ SCONCE_PURE BrdfLobes lobesAt(BrdfSurface surface, real nv)
 /// Of white light from all sides, what the specular lobe reflects to the viewer; a mirror's weight of the mirrored direction.
 SCONCE_PURE vec3 specularColor(BrdfLobes lobes) { return lobes.atNormal * lobes.shares.x + lobes.atEdge * lobes.shares.y; }
 
-/// Of white light from all sides, what the surface reflects to all sides: Gauss's rule of four points over the cosine.
-SCONCE_PURE vec3 hemisphericalAlbedo(BrdfSurface surface)
+/// Of white light from all sides, what the specular lobe reflects to all sides: Gauss's rule of four points over the cosine.
+SCONCE_PURE vec3 hemisphericalSpecular(BrdfSurface surface)
 {
-    vec3 specular = specularColor(lobesAt(surface, real(0.069432))) * real(0.024152) + specularColor(lobesAt(surface, real(0.330009))) * real(0.215214) +
-                    specularColor(lobesAt(surface, real(0.669991))) * real(0.436931) + specularColor(lobesAt(surface, real(0.930568))) * real(0.323703);
-    return surface.baseColor * ((real(1.0) - surface.metallic) * (real(1.0) - meanDielectricShare(surface.roughness))) + specular;
+    return specularColor(lobesAt(surface, real(0.069432))) * real(0.024152) + specularColor(lobesAt(surface, real(0.330009))) * real(0.215214) +
+           specularColor(lobesAt(surface, real(0.669991))) * real(0.436931) + specularColor(lobesAt(surface, real(0.930568))) * real(0.323703);
 }
+/// The same of the diffuse lobe.
+SCONCE_PURE vec3 hemisphericalDiffuse(BrdfSurface surface)
+{
+    return surface.baseColor * ((real(1.0) - surface.metallic) * (real(1.0) - meanDielectricShare(surface.roughness)));
+}
+SCONCE_PURE vec3 hemisphericalAlbedo(BrdfSurface surface) { return hemisphericalDiffuse(surface) + hemisphericalSpecular(surface); }
 
 /// Both lobes; 0 when either direction is below the surface.
 SCONCE_PURE BrdfValue evaluateLobes(BrdfLobes lobes, real roughness, vec3 normal, vec3 view, vec3 light)
@@ -236,6 +241,15 @@ SCONCE_PURE vec3 sampleCosine(vec2 u)
     real phi = real(2.0) * kBrdfPi * u.y;
     real up = real(1.0) - u.x;
     return vec3(r * cos(phi), r * sin(phi), sqrt(up > real(0.0) ? up : real(0.0)));
+}
+
+// Irradiance over radiance of a patch of an emitter, on a surface that faces it. facing: cosine at the patch; d2: squared distance; disc: its area
+// again, or 0 where it is small for its distance. A disc of that area seen on its axis has exactly this form factor (Howell, "A Catalog of Radiation
+// Heat Transfer Configuration Factors", B-12 limit), so that a receiver near the patch sees no singularity.
+SCONCE_PURE real patchAttenuation(real facing, real d2, real area, real disc, bool oneSided)
+{
+    real seen = facing < real(0.0) ? (oneSided ? real(0.0) : -facing) : facing;
+    return seen * area / (d2 + disc / kBrdfPi);
 }
 
 // Irradiance factor of a point or spot light at a distance; range 0 is unlimited (KHR_lights_punctual).

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/field/field_data.h"
+#include "runtime/scene/lights.h"
+#include "scene/triangle_rays.h"
+#include "shaders/shared/bake_passes.h"
+
+namespace sconce
+{
+
+/// Gathers light at the texels and cells of surface light by rays to the scene's triangles, on all cores: what surface_gather.comp and
+/// cell_gather.comp find by rays through the light field, by the same text (shaders/shared/surface_gather.h) and numbers, but exact, so that no
+/// light comes through a wall and no shadow lacks. Where a surface reflects specularly, a ray goes on by that lobe as often as the lobe has a
+/// share in what is reflected, and ends where it is scattered: glossy floors throw light on. Refers to all that it is made from.
+class TriangleGather
+{
+public:
+    struct Desc
+    {
+        uint32_t rays = 0;       // a texel
+        uint32_t shadowRays = 0; // a texel, to emitters; at most gpu::kMostShadowRays
+    };
+    /// @param field   with distances, octree and surfaceSize
+    /// @param texels  of all probes
+    TriangleGather(const TriangleRays& triangles, const FieldData& field, std::span<const gpu::SurfaceTexel> texels, const LightList& lights,
+                   const Desc& desc);
+
+    /// What a probe's texels are gathered into, [6 surfaceSize^2] each.
+    struct Target
+    {
+        std::span<uint32_t> links; // [ray][texel]: gpu::kLinkSky and its like, or another texel
+        std::span<vec4> first;     // SurfacePush::first, light, tilts
+        std::span<vec4> light;
+        std::span<vec4> tilts; // empty: not asked for
+        // Becomes what a ray that ends there brings: it reflects by its diffuse lobe alone, as rays that meet the others go on; but what
+        // emitters give it straight it reflects by all its lobes as if they were diffuse, since rays would meet small lamps by chance.
+        std::span<gpu::SurfaceTexel> sending;
+    };
+    void gather(uint32_t probe, const Target& target) const;
+    /// Colours of the scene's metals, of luminance 1, the first white: at most gpu::kTints.
+    const std::vector<vec3>& tints() const { return palette; }
+
+    /// Of the cells' facings, [cell][6].
+    struct Cells
+    {
+        std::vector<uint32_t> places; // a cell's, with gpu::kCellKnown where it has one
+        std::vector<uint32_t> links;  // [facing][ray]
+        std::vector<vec3> straight;   // radiance from emitters and sky; negative: too little is known
+    };
+    Cells gatherCells() const;
+    /// @param sent   radiance that each texel sends, RGB9E5
+    /// @param words  of the cells as FieldData::surfaceLight has them
+    void lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const;
+
+private:
+    const TriangleRays* triangles;
+    const FieldData* field;
+    std::span<const gpu::SurfaceTexel> texels;
+    const LightList* lights;
+    Desc desc;
+    float gap; // metres that rays start off their surface
+    std::vector<vec3> palette;
+};
+
+} // namespace sconce
