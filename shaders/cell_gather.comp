@@ -18,7 +18,7 @@ uint endOfRay(vec3 point, vec3 direction, vec3 plane, vec2 lots, out float t, ou
 }
 void keepLink(uint i, uint link)
 {
-    if (link < kLinkSurface) sent += broughtBy(link);
+    if (link < kLinkDark) sent += broughtBy(link);
 }
 #include "shared/surface_gather.h"
 

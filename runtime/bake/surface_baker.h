@@ -65,7 +65,7 @@ private:
     Desc desc;
     Pipeline gatherPass, bouncePass, tiltPass, filterPass, cellPass;
     Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
-    Buffer tints;
+    Buffer tints, reflected;
     Buffer tilts, tilted;                                                     // the same, where the field has directions
     std::vector<uint32_t> links;                                              // [probe][ray][texel]
     TriangleGather::Cells cells; // by rays to triangles

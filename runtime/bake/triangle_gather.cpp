@@ -20,6 +20,7 @@ namespace
 {
 
 using gpu::GpuLight;
+using gpu::kLinkDark;
 using gpu::kLinkNone;
 using gpu::kLinkSky;
 using gpu::kLinkSurface;
@@ -47,6 +48,7 @@ struct Gatherer : LightFieldTwin<float>
     std::span<const glm::vec3> palette;
     std::span<uint32_t> links; // of the probe
     size_t slot = 0;           // of the texel in it
+    vec3 brought{0.0f};        // light of emitters that the rays have brought by specular reflection, summed
 
     Gatherer(const TriangleRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
              std::span<const glm::vec3> tints, std::span<uint32_t> into)
@@ -71,25 +73,46 @@ struct Gatherer : LightFieldTwin<float>
         vec3 from = worldOf(point), tint(1.0f);
         t = kFar;
         emitted = vec3(0.0f);
+        float density = 0.0f; // over solid angle, of the reflection that the ray comes by
         for (int turn = 0;; ++turn)
         {
             const auto hit = triangles.closest(from, direction);
-            if (turn == 0 && hit)
-            {
-                t = hit->t / field.scale;
-                emitted = nearEmission(hit->triangle, direction, t * t);
-            }
+            if (turn == 0 && hit) t = hit->t / field.scale;
             if (!hit) return kLinkSky;
-            const Place place = placeOf(*hit, direction);
-            if (turn == kMostSpecular || !goesOn(place, turn == 0 ? lots.y : random.uniform(), random, direction, tint))
+            if (const EmittingTriangle* emitter = emitterMet(hit->triangle, direction))
             {
-                const uint found = texelAt((place.position - field.origin) / field.scale, place.normal, lots.x);
-                return found == kLinkSurface ? found : found | nearestTint(tint) << gpu::kLinkTexelBits;
+                const float distance_ = hit->t / field.scale, d2 = distance_ * distance_;
+                if (turn == 0)
+                    emitted += isNearPatch(d2, emitter->patch) ? emitter->emission : vec3(0.0f);
+                else
+                    brought += tint * emitter->emission * (density / (density + densityOfPatch(d2, facingOf(*emitter, direction), emitter->patch)));
             }
+            const Place place = placeOf(*hit, direction);
+            const BrdfLobes lobes = lobesAt(place.surface, -dot(place.shading, direction));
+            const vec3 color = specularColor(lobes);
+            const float all = luminance(color), onward = std::min(all, kMostOnward);
+            brought += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, random);
             from = place.position + 2.0f * gap * place.normal;
+            if (turn < kMostTurns && random.uniform() < onward)
+            {
+                tint *= color / all;
+                density = reflectBy(place, random, direction);
+                continue;
+            }
+            const uint found = texelAt((place.position - field.origin) / field.scale, place.normal, random.uniform());
+            if (found != kLinkSurface) return found | nearestTint(tint) << kLinkTexelBits;
+            // No probe sees the place: there the ray is scattered itself.
+            const vec3 scattered = scatteredBy(place.surface);
+            const float goesOn = luminance(scattered);
+            brought += tint * scattered * (emittersByDiffuse(place, random) + deltaLightAt(place) / kBrdfPi);
+            if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
+            tint *= scattered / goesOn;
+            const vec3 up = sampleCosine(random.uniform2());
+            direction = normalize(toWorld(tangentFrame(place.normal), up));
+            density = std::max(up.z, 1e-6f) / kBrdfPi;
         }
     }
-    static constexpr int kMostSpecular = 4; // reflections on a ray's way
+    static constexpr int kMostTurns = 8; // on a ray's way to a texel
 
     struct Place
     {
@@ -115,27 +138,123 @@ struct Gatherer : LightFieldTwin<float>
     }
     static constexpr float kLeastCosine = 1e-3f; // of a shading normal to the ray
 
-    /// Whether a ray is reflected specularly: drawn by the lobe's share of white light, so that it needs no weight but its colour.
-    /// @param lot        even random number
-    /// @param direction  becomes that of the reflected ray; `tint` is multiplied by the lobe's colour, of luminance 1
-    bool goesOn(const Place& place, float lot, Random& random, vec3& direction, vec3& tint) const
+    static constexpr float kMostOnward = 0.75f; // of rays, so that those that end count not too much each; the rest of a metal's light is scattered
+
+    /// Turns a ray by the specular lobe that it meets.
+    /// @return  density of the new direction over solid angle
+    float reflectBy(const Place& place, Random& random, vec3& direction) const
     {
-        const vec3 color = specularColor(lobesAt(place.surface, -dot(place.shading, direction)));
-        if (!(lot < std::min(luminance(color), kMostOnward))) return false;
-        tint *= color / luminance(color);
         const TangentFrame tangents = tangentFrame(place.shading);
         const vec3 view = toTangent(tangents, -direction);
+        const float alpha = ggxAlpha(place.surface.roughness);
+        const bool mirror = isMirror(place.surface.roughness);
         vec3 out(0.0f);
         for (int i = 0; i < kTries && !(dot(out, place.normal) > 0.0f); ++i)
-        {
-            const vec3 halfway = isMirror(place.surface.roughness)
-                                     ? vec3(0.0f, 0.0f, 1.0f)
-                                     : sampleVisibleNormal(view, ggxAlpha(place.surface.roughness), random.uniform2());
-            out = toWorld(tangents, reflect(-view, halfway));
-        }
+            out = toWorld(tangents, reflect(-view, mirror ? vec3(0.0f, 0.0f, 1.0f) : sampleVisibleNormal(view, alpha, random.uniform2())));
+        const vec3 back = -direction;
         direction = dot(out, place.normal) > 0.0f ? normalize(out) : reflect(direction, place.normal);
-        return true;
+        return mirror ? kMirrorDensity : std::max(visibleNormalPdf(place.shading, back, direction, alpha), 1e-6f);
     }
+    static constexpr float kMirrorDensity = 1e20f;
+
+    /// Density over solid angle by which the patches of all emitters are drawn at a place.
+    float densityOfPatch(float d2, float facing_, float patch) const
+    {
+        return d2 / std::max(facing_ * patch * float(lightsHeader.emitterCount), 1e-12f);
+    }
+
+    const EmittingTriangle* emitterMet(uint32_t triangle, vec3 direction) const
+    {
+        const auto found = std::ranges::lower_bound(emitters, triangle, {}, &EmittingTriangle::triangle);
+        return found != emitters.end() && found->triangle == triangle && facingOf(*found, direction) > 0.0f ? &*found : nullptr;
+    }
+
+    /// Cosine at an emitter to a ray that meets it; 0 on a side that is dark.
+    float facingOf(const EmittingTriangle& emitter, vec3 direction) const
+    {
+        const float cosine = -dot(geometricNormal(triangles.scene(), emitter.triangle), direction);
+        return emitter.side == 0 ? std::abs(cosine) : std::max(float(emitter.side) * cosine, 0.0f);
+    }
+
+    /// A patch of an emitter, drawn evenly.
+    struct Drawn
+    {
+        vec3 toLight;      // unit
+        vec3 emission;     // 0: its light doesn't arrive
+        float density = 0; // over solid angle, of all patches
+    };
+
+    /// What it gives and what rays along a lobe meet count by the balance heuristic (Veach and Guibas 1995, "Optimally Combining Sampling
+    /// Techniques for Monte Carlo Rendering").
+    Drawn drawPatch(const Place& place, Random& random) const
+    {
+        Drawn drawn{vec3(0.0f), vec3(0.0f)};
+        if (lightsHeader.emitterCount == 0) return drawn;
+        const GpuLight& light = lights[lightsHeader.deltaCount + random.below(lightsHeader.emitterCount)];
+        const vec3 point = (place.position - field.origin) / field.scale, away = light.position - point;
+        const float d2 = std::max(dot(away, away), 1e-14f), distance_ = sqrt(d2);
+        drawn.toLight = away / distance_;
+        const float cosine = -dot(light.direction, drawn.toLight), faced = light.innerCone > 0.0f ? cosine : std::abs(cosine);
+        if (!(dot(drawn.toLight, place.normal) > 0.0f) || !(dot(drawn.toLight, place.shading) > 0.0f) || !(faced > 0.0f)) return drawn;
+        drawn.density = densityOfPatch(d2, faced, light.area);
+        if (emitterReaches(point + 2.0f * gap / field.scale * place.normal, drawn.toLight, distance_, place.normal))
+            drawn.emission = light.intensity;
+        return drawn;
+    }
+
+    /// Light straight from emitters that a specular lobe reflects against a ray.
+    vec3 emittersBySpecular(const BrdfLobes& lobes, const Place& place, vec3 direction, Random& random) const
+    {
+        if (isMirror(place.surface.roughness)) return vec3(0.0f);
+        const Drawn light = drawPatch(place, random);
+        if (light.emission == vec3(0.0f)) return vec3(0.0f);
+        const float density =
+            light.density + visibleNormalPdf(place.shading, -direction, light.toLight, ggxAlpha(place.surface.roughness));
+        return evaluateLobes(lobes, place.surface.roughness, place.shading, -direction, light.toLight).specular *
+               (dot(light.toLight, place.shading) / density) * light.emission;
+    }
+
+    /// Mean radiance that arrives straight from emitters, weighted by the cosine.
+    vec3 emittersByDiffuse(const Place& place, Random& random) const
+    {
+        const Drawn light = drawPatch(place, random);
+        if (light.emission == vec3(0.0f)) return vec3(0.0f);
+        const float cosine = dot(light.toLight, place.normal) / kBrdfPi;
+        return cosine / (light.density + cosine) * light.emission;
+    }
+
+    /// Irradiance from lights of no extent.
+    vec3 deltaLightAt(const Place& place) const
+    {
+        const vec3 point = (place.position - field.origin) / field.scale + 2.0f * gap / field.scale * place.normal;
+        vec3 sum(0.0f);
+        for (const GpuLight& light : lights.first(lightsHeader.deltaCount))
+        {
+            vec3 toLight = -light.direction, given = light.intensity;
+            float far = 2.0f * field.diagonal;
+            if (light.type != gpu::kLightDirectional)
+            {
+                const vec3 away = light.position - point;
+                far = std::max(length(away), 1e-7f);
+                toLight = away / far;
+                given *= distanceAttenuation(far, light.range);
+                if (light.type == gpu::kLightSpot) given *= spotAttenuation(-dot(toLight, light.direction), light.innerCone, light.outerCone);
+            }
+            const float cosine = dot(toLight, place.normal);
+            if (cosine > 0.0f && luminance(given) > 0.0f && emitterReaches(point, toLight, far, place.normal)) sum += cosine * given;
+        }
+        return sum;
+    }
+
+    /// What a surface scatters of the light of the rays that don't go on by its specular lobe, which are as many fewer.
+    vec3 scatteredBy(const BrdfSurface& surface) const
+    {
+        const vec3 specular = hemisphericalSpecular(surface);
+        const float white = luminance(specular), onward = std::min(white, kMostOnward);
+        const vec3 rest = hemisphericalDiffuse(surface) + specular * (1.0f - onward / std::max(white, 1e-6f));
+        return min(rest / (1.0f - onward), vec3(1.0f));
+    }
+
     static constexpr int kTries = 4; // for a direction above the surface
 
     uint nearestTint(vec3 tint) const
@@ -147,29 +266,19 @@ struct Gatherer : LightFieldTwin<float>
     }
 
     /// What a texel sends, see TriangleGather::Target: to the rays that end there, which are as many fewer as go on.
-    gpu::SurfaceTexel sending(gpu::SurfaceTexel known, const Place& place, vec3 fromEmitters) const
+    gpu::SurfaceTexel sending(gpu::SurfaceTexel known, const Place& place) const
     {
-        const float all = luminance(hemisphericalAlbedo(place.surface));
-        const float onward = std::min(luminance(hemisphericalSpecular(place.surface)), kMostOnward), share = onward / std::max(all, 1e-6f);
-        const vec3 albedo = unpackRootOfColor(known.albedo);
-        known.albedo = packRootOfColor((1.0f - share) / (1.0f - onward) * albedo);
-        known.sent = packSharedExponent((unpackSharedExponent(known.sent) + share * albedo * fromEmitters) / (1.0f - onward));
+        const vec3 all = max(hemisphericalAlbedo(place.surface), vec3(1e-6f));
+        const float onward = std::min(luminance(hemisphericalSpecular(place.surface)), kMostOnward);
+        known.albedo = packRootOfColor(scatteredBy(place.surface) / all * unpackRootOfColor(known.albedo));
+        known.sent = packSharedExponent(unpackSharedExponent(known.sent) / (1.0f - onward));
         return known;
     }
-    static constexpr float kMostOnward = 0.75f; // of rays, so that those that end count not too much each; the rest of a metal's light is scattered
 
     /// A patch seen from within some of its widths is no disc on its axis: there rays that meet its triangle count.
     static bool isNearPatch(float d2, float patch) { return d2 < kNearPatch * patch; }
     static constexpr float kNearPatch = 9.0f; // of its area
     static float discOf(float) { return 0.0f; }
-
-    vec3 nearEmission(uint32_t triangle, vec3 direction, float d2) const
-    {
-        const auto found = std::ranges::lower_bound(emitters, triangle, {}, &EmittingTriangle::triangle);
-        if (found == emitters.end() || found->triangle != triangle || !isNearPatch(d2, found->patch)) return vec3(0.0f);
-        const float side = -dot(geometricNormal(triangles.scene(), triangle), direction);
-        return found->side == 0 || float(found->side) * side > 0.0f ? found->emission : vec3(0.0f);
-    }
 
     /// Normal of a triangle on the side that a ray along `direction` meets.
     vec3 facing(uint32_t triangle, vec3 direction) const
@@ -271,8 +380,10 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                     {
                         text.slot = row * side + size_t(x);
                         target.first[text.slot] = target.light[text.slot] = vec4(0.0f);
+                        target.reflected[text.slot] = 0;
                         if (!target.tilts.empty()) target.tilts[text.slot] = vec4(0.0f);
                         if (!(own[text.slot].normal & gpu::kSurfaceKnown)) continue;
+                        text.brought = vec3(0.0f);
                         const auto surface = text.surfacePointAt(probe, face, x, y);
                         vec3 plane = surface.normal, point = text.probeHeader(probe).centre + surface.at;
                         const auto exact = text.findSurface(probe, point, plane);
@@ -288,8 +399,9 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                             field->info.surfaceDirections != 0 ? surface.normal : text.unpackNormal8(own[text.slot].normal);
                         const auto got = text.gatherAt(point, normal, plane, text.pixelOfTexel(glm::uvec3(x, y, face)));
                         target.sending[text.slot] =
-                            exact ? text.sending(own[text.slot], *exact, got.emitters) : own[text.slot];
+                            exact ? text.sending(own[text.slot], *exact) : own[text.slot];
                         target.light[text.slot].w = got.variance;
+                        target.reflected[text.slot] = text.packSharedExponent(text.brought / std::max(got.ends.all, 1.0f));
                         target.first[text.slot] = vec4(got.light, text.knowsTooLittle(got.ends, got.asked) ? gpu::kNotKnown : got.reach);
                         if (!target.tilts.empty()) target.tilts[text.slot] = vec4(text.alongPlane(got.tilt, normal), 0.0f, 0.0f);
                     }
@@ -316,7 +428,8 @@ TriangleGather::Cells TriangleGather::gatherCells() const
                         if (found.places[cell] == 0) return;
                         const vec3 axis = text.faceDirection(facing, vec3(0.0f, 0.0f, 1.0f));
                         const auto got = text.gatherAt(text.cellPlace(at, found.places[cell]), axis, axis, glm::uvec2(cell, facing));
-                        if (!text.knowsTooLittle(got.ends, float(desc.rays))) found.straight[index] = got.light;
+                        if (!text.knowsTooLittle(got.ends, float(desc.rays)))
+                            found.straight[index] = got.light + text.brought / std::max(got.ends.all, 1.0f);
                     }
                 });
     return found;

@@ -34,9 +34,10 @@ public:
         std::span<uint32_t> links; // [ray][texel]: gpu::kLinkSky and its like, or another texel
         std::span<vec4> first;     // SurfacePush::first, light, tilts
         std::span<vec4> light;
+        std::span<uint32_t> reflected; // radiance of emitters that comes by specular reflection, RGB9E5
         std::span<vec4> tilts; // empty: not asked for
-        // Becomes what a ray that ends there brings: it reflects by its diffuse lobe alone, as rays that meet the others go on; but what
-        // emitters give it straight it reflects by all its lobes as if they were diffuse, since rays would meet small lamps by chance.
+        // Becomes what a ray that ends there brings: it reflects by its diffuse lobe alone, as rays that meet the others go on; but the
+        // light of what has no extent it reflects by all its lobes as if they were diffuse.
         std::span<gpu::SurfaceTexel> sending;
     };
     void gather(uint32_t probe, const Target& target) const;

@@ -60,6 +60,7 @@ const uint kTints = 15u;
 const uint kLinkSky = 0xffffffffu;
 const uint kLinkNone = 0xfffffffeu; // nothing is known of it
 const uint kLinkSurface = 0xfffffffdu; // a surface of whose light nothing is known
+const uint kLinkDark = 0xfffffffcu; // nothing comes by it
 const float kNotKnown = -1.0f; // in place of the rays' length: too few ends are
 
 /// Of the passes that gather light at surfaces, over one probe's texels.
@@ -73,13 +74,14 @@ struct SurfacePush
     SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter and of cells, the surface light
     SCONCE_ADDRESS(SurfaceFloats) tilts;  // of all probes: moment along the plane of the luminance straight from emitters and sky, and of all; none: 0
     SCONCE_ADDRESS(BakeWords) tilted;     // of all probes: of the filter, packTilt() of a texel
+    SCONCE_ADDRESS(BakeWords) reflected;  // of all probes: light of emitters that comes by specular reflection, RGB9E5
     SCONCE_ADDRESS(SurfaceFloats) tints;  // kTints colours, the first white
     uint probe;
     uint rays;       // a texel
     uint shadowRays; // a texel, to emitters
     float offset;    // field units that a ray starts off its surface
 };
-SCONCE_CHECK_SIZE(SurfacePush, 88);
+SCONCE_CHECK_SIZE(SurfacePush, 96);
 const uint kMostShadowRays = 32u;
 const float kMostSlope = 5.0f; // tangent of a ray's angle to the normal that a tilt's moment counts
 const uint kCellGroup = 64u; // facings of cells a workgroup of cell_gather.comp

@@ -29,7 +29,7 @@ struct Ends
     real all, surfaces, known;
 };
 
-/// @return  whether the link is a texel, whose light is known
+/// @return  whether the link is a texel
 SCONCE_FN bool countEnd(SCONCE_INOUT(Ends) ends, uint link)
 {
     if (link == kLinkNone) return false;
@@ -38,7 +38,7 @@ SCONCE_FN bool countEnd(SCONCE_INOUT(Ends) ends, uint link)
     ends.surfaces += real(1.0);
     if (link == kLinkSurface) return false;
     ends.known += real(1.0);
-    return true;
+    return link != kLinkDark;
 }
 
 /// Of a link that is a texel: its index, and which colour of metal is before it.

@@ -1,8 +1,8 @@
 // How light is gathered at a place: what its rays end at, and what comes straight from emitters. Shared text, see probe_trace.h: the device's rays go
 // through the light field, the host's to the scene's triangles. Needs besides surface_light.h and gathered_rays.h:
 //   gatherRays(), shadowRays()                  how many of either
-//   endOfRay(point, direction, plane, lots, t, emitted)  the link of a ray's end, its length, and what the end emits where it is near: see isNearPatch();
-//                                               lots: two even random numbers
+//   endOfRay(point, direction, plane, lots, t, emitted)  the link of a ray's end, its length, and what an emitter that it meets sends where it is near:
+//                                               see isNearPatch(); lots: two even random numbers
 //   keepLink(i, link)                           of the i-th ray
 //   emitterReaches(point, toLight, distance, plane)
 //   isNearPatch(d2, area)                       whether a patch of an emitter is left to the rays that meet it: so near, it is no longer small
@@ -113,7 +113,8 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel)
             got.asked += real(1.0);
             real t;
             vec3 met;
-            link = endOfRay(point, direction, plane, pairOfRay(pixel, i, kLinkStream), t, met);
+            // Another sample's numbers: the same one's would be the direction's, shifted, and what a ray ends at must not hang on where it goes.
+            link = endOfRay(point, direction, plane, pairOfRay(pixel, 29u * i + 17u, kLinkStream), t, met);
             nearness += real(1.0) / max(t, real(1e-6));
             real luminous = luminance(met);
             emitted += met;
