@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Diffuse light read at surfaces against what it replaced, the probes' irradiance with shadowed samples and a filter: errors, mean and time of a
-# frame, bake time and bytes. Prints the rows of bench/results/surface_light.json.
+# frame, bake time and bytes; pixels in which both see the same surface. Prints the rows of bench/results/surface_light.json.
 # surface_table.sh [SCENE[=COUNT]...] as bench/pages/effects_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180],
 # FRAMES=N timed, the median counts [5], RESOLUTION=texels [256], SPP=paths a pixel [512; Sponza, four times as many], OUT=folder, whose references are kept [out/surfaces].
 set -euo pipefail
@@ -29,8 +29,8 @@ for entry in "${list[@]}"; do
         "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --bounces 8 --surface-texels $texels --effects all -o "$at.sconce" --json --quiet > "$at.$texels.bake.json"
         "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" -o "$at.$texels.exr" --json --quiet > "$at.$texels.json"
         "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" --effects diffuse -o "$at.alone.exr" --json --quiet > "$at.$texels.alone.json"
-        "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer diffuse_indirect --metric relmse,flip,mean --json --side-by-side "$at.$texels.png" > "$at.$texels.diffuse.json"
-        "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer glossy_indirect --metric flip,mean --json > "$at.$texels.glossy.json"
+        "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer diffuse_indirect --same-surface --metric relmse,flip,mean --json --side-by-side "$at.$texels.png" > "$at.$texels.diffuse.json"
+        "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer glossy_indirect --same-surface --metric flip,mean --json > "$at.$texels.glossy.json"
     done
     python3 - "$at" "$name" "$count" <<'P'
 import json, sys

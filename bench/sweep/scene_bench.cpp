@@ -167,6 +167,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     bake.chart = settings.chart();
     bake.bounces = settings.bounces;
     bake.surfaceTexels = settings.bakedSurfaceTexels();
+    if (settings.fieldGather) bake.gather = "field";
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
     if (bake.grid && bake.chart == gpu::kChartOctahedral) bake.bounceShader = gridBouncePass();
@@ -180,6 +181,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
                                        {"chart", bake.chart},
                                        {"bounces", bake.bounces},
                                        {"surface", bake.surfaceTexels},
+                                       {"gather", bake.gather},
                                        {"voxels", bake.octree.voxels}});
     const std::filesystem::path file = cached("fields", key, ".sconce");
     if (const std::optional<Json> known = readJson(cached("fields", key, ".json")))

@@ -138,7 +138,8 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     // The octree is built from a copy of all maps on the device, which for a software device is main memory again.
     const uint64_t texels = 6ull * info.surfaceSize * info.surfaceSize; // of surface light: links, what bounces need, the light itself
     const uint64_t tilts = info.surfaceDirections != 0 ? 6 : 0;         // words a texel
-    const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 13 + tilts : 0));
+    const uint64_t cells = texels > 0 && settings.gather == knobs::kGathers[0] ? 6 * kCellsOfProbe : 0; // facings; their links stay here
+    const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 14 + tilts : 0)) + cells * settings.surfaceRays;
     const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 || surface > 0 ? 3 : 2) * light +
                            (emitters ? light : 0) + surface;
     const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();

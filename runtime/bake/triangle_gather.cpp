@@ -90,7 +90,7 @@ struct Gatherer : LightFieldTwin<float>
             const Place place = placeOf(*hit, direction);
             const BrdfLobes lobes = lobesAt(place.surface, -dot(place.shading, direction));
             const vec3 color = specularColor(lobes);
-            const float all = luminance(color), onward = std::min(all, kMostOnward);
+            const float all = luminance(color), onward = shareOnward(place.surface, all);
             brought += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, random);
             from = place.position + 2.0f * gap * place.normal;
             if (turn < kMostTurns && random.uniform() < onward)
@@ -112,7 +112,7 @@ struct Gatherer : LightFieldTwin<float>
             density = std::max(up.z, 1e-6f) / kBrdfPi;
         }
     }
-    static constexpr int kMostTurns = 8; // on a ray's way to a texel
+    static constexpr int kMostTurns = 16; // on a ray's way to a texel
 
     struct Place
     {
@@ -138,7 +138,14 @@ struct Gatherer : LightFieldTwin<float>
     }
     static constexpr float kLeastCosine = 1e-3f; // of a shading normal to the ray
 
-    static constexpr float kMostOnward = 0.75f; // of rays, so that those that end count not too much each; the rest of a metal's light is scattered
+    /// How many of the rays that meet a surface its specular lobe turns on.
+    /// @param reflected  share of white light, [0,1]
+    static float shareOnward(const BrdfSurface& surface, float reflected)
+    {
+        return surface.roughness > kRoughestOnward ? 0.0f : std::min(reflected, kMostOnward);
+    }
+    static constexpr float kRoughestOnward = 0.7f; // the lobes of rougher ones are about as wide as the diffuse one
+    static constexpr float kMostOnward = 0.75f; // so that rays that end count not too much each; the rest of a metal's light is scattered
 
     /// Turns a ray by the specular lobe that it meets.
     /// @return  density of the new direction over solid angle
@@ -250,7 +257,7 @@ struct Gatherer : LightFieldTwin<float>
     vec3 scatteredBy(const BrdfSurface& surface) const
     {
         const vec3 specular = hemisphericalSpecular(surface);
-        const float white = luminance(specular), onward = std::min(white, kMostOnward);
+        const float white = luminance(specular), onward = shareOnward(surface, white);
         const vec3 rest = hemisphericalDiffuse(surface) + specular * (1.0f - onward / std::max(white, 1e-6f));
         return min(rest / (1.0f - onward), vec3(1.0f));
     }
@@ -269,7 +276,7 @@ struct Gatherer : LightFieldTwin<float>
     gpu::SurfaceTexel sending(gpu::SurfaceTexel known, const Place& place) const
     {
         const vec3 all = max(hemisphericalAlbedo(place.surface), vec3(1e-6f));
-        const float onward = std::min(luminance(hemisphericalSpecular(place.surface)), kMostOnward);
+        const float onward = shareOnward(place.surface, luminance(hemisphericalSpecular(place.surface)));
         known.albedo = packRootOfColor(scatteredBy(place.surface) / all * unpackRootOfColor(known.albedo));
         known.sent = packSharedExponent(unpackSharedExponent(known.sent) / (1.0f - onward));
         return known;

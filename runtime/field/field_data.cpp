@@ -11,7 +11,6 @@ namespace sconce
 namespace
 {
 
-constexpr size_t kCellsOfProbe = 512; // at most; 14 KiB
 
 } // namespace
 

@@ -69,6 +69,7 @@ uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels
 
 /// Cells of light in the open along each axis: shaders/shared/light_cells.h.
 glm::ivec3 lightCells(const gpu::LightFieldInfo& info);
+inline constexpr size_t kCellsOfProbe = 512; // cells of light in the open, at most; 14 KiB
 /// LightFieldInfo::cellShift of a new field: the finest cells, of two voxels or more, that there are at most 512 of for a probe.
 int cellShiftOf(const gpu::LightFieldInfo& info);
 /// Words of FieldData::surfaceLight that the texels of all probes take: their light, then their tilts where the field has directions.

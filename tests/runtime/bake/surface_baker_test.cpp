@@ -22,12 +22,14 @@ using Text = twin::LightFieldTwin<float>;
 class SurfaceBake : public testing::Test
 {
 protected:
-    FieldData bake(const Scene& scene, std::vector<vec3> probes, uint32_t bounces, uint32_t surfaceTexels = 26)
+    FieldData bake(const Scene& scene, std::vector<vec3> probes, uint32_t bounces, uint32_t surfaceTexels = 26,
+                   std::string_view gather = knobs::gather.value)
     {
         BakeSettings settings;
         settings.resolution = 128;
         settings.bounces = bounces;
         settings.surfaceTexels = surfaceTexels;
+        settings.gather = gather;
         settings.octree.voxels = 16;
         auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
         if (!field) throw std::runtime_error(field.error().message);
@@ -87,21 +89,22 @@ TEST_F(SurfaceBake, EachBounceInASphereIsTheAlbedosShareOfTheOneBefore)
     mesh.sphere(vec3(0.0f), kRadius, 64, 32, mesh.material("white", vec3(test::RoughModel::baseColorOf(kAlbedo))));
     scene.lights.push_back(pointLight(kIntensity));
     const double first = kAlbedo * kIntensity / (std::numbers::pi * kRadius * kRadius);
-    for (const uint32_t bounces : {0u, 1u, 2u, 4u, 8u})
-    {
-        const double sum = first * (1.0 - std::pow(kAlbedo, double(bounces + 1))) / (1.0 - kAlbedo);
-        const FieldData field = bake(scene, {vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)}, bounces);
-        const Spread found = spreadOf(field);
-        EXPECT_NEAR(found.mean, sum, 0.01 * sum) << bounces << " bounces";
-        EXPECT_LT(found.worst, 0.06) << bounces << " bounces";
-        if (bounces == 0) continue;
-        // All that a place in the open sees is as bright.
-        const std::vector<double> open = cellsOf(field, bounces % 6);
-        EXPECT_GT(open.size(), 10u);
-        const Spread cells = spreadOf(open);
-        EXPECT_NEAR(cells.mean, sum, 0.01 * sum) << bounces << " bounces";
-        EXPECT_LT(cells.worst, 0.06) << bounces << " bounces";
-    }
+    for (const std::string_view gather : knobs::kGathers)
+        for (const uint32_t bounces : {0u, 1u, 2u, 4u, 8u})
+        {
+            const double sum = first * (1.0 - std::pow(kAlbedo, double(bounces + 1))) / (1.0 - kAlbedo);
+            const FieldData field = bake(scene, {vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)}, bounces, 26, gather);
+            const Spread found = spreadOf(field);
+            EXPECT_NEAR(found.mean, sum, 0.01 * sum) << gather << ", " << bounces << " bounces";
+            EXPECT_LT(found.worst, 0.06) << gather << ", " << bounces << " bounces";
+            if (bounces == 0) continue;
+            // All that a place in the open sees is as bright.
+            const std::vector<double> open = cellsOf(field, bounces % 6);
+            EXPECT_GT(open.size(), 10u);
+            const Spread cells = spreadOf(open);
+            EXPECT_NEAR(cells.mean, sum, 0.01 * sum) << gather << ", " << bounces << " bounces";
+            EXPECT_LT(cells.worst, 0.06) << gather << ", " << bounces << " bounces";
+        }
 }
 
 // Under a sky of radiance 1 a plate gathers 1 at every point of its upper side.

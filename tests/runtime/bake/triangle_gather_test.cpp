@@ -1,0 +1,167 @@
+// Light gathered by rays to the scene's triangles, against closed forms and against itself.
+#include "runtime/bake/triangle_gather.h"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "runtime/bake/bake.h"
+#include "runtime/field/tracer_cpu.h"
+#include "scene/mesh_builder.h"
+#include "shaders/shared/pure.h"
+#include "tests/support/device.h"
+
+namespace sconce
+{
+namespace
+{
+
+using Text = twin::LightFieldTwin<float>;
+
+class TriangleGathering : public testing::Test
+{
+protected:
+    FieldData bake(const Scene& scene, std::vector<vec3> probes, uint32_t bounces, std::string_view gather = "triangles")
+    {
+        BakeSettings settings;
+        settings.resolution = 128;
+        settings.bounces = bounces;
+        settings.converged = 0.0f;
+        settings.surfaceTexels = 26;
+        settings.gather = gather;
+        settings.octree.voxels = 16;
+        auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        if (!field) throw std::runtime_error(field.error().message);
+        return std::move(*field);
+    }
+
+    struct Texel
+    {
+        vec3 position, normal, light; // world
+    };
+    /// Those of one probe whose light is known.
+    static std::vector<Texel> texelsOf(const FieldData& field, uint32_t probe)
+    {
+        Text text(field, {});
+        const int side = int(field.info.surfaceSize);
+        std::vector<Texel> found;
+        for (int i = 0; i < 6 * side * side; ++i)
+        {
+            const int face = i / (side * side), y = i / side % side, x = i % side;
+            const auto point = text.surfacePointAt(probe, face, x, y);
+            const uint32_t word = field.surfaceLight[text.surfaceIndex(probe, face, x, y)];
+            if (!(point.width > 0.0f) || word == 0) continue;
+            found.push_back({field.info.origin + field.info.scale * (field.probes[probe].centre + point.at), point.normal,
+                             text.unpackSharedExponent(word)});
+        }
+        return found;
+    }
+
+    testing_support::ValidatedDevice device;
+    BakeReport report;
+};
+
+// In a closed box that glows and reflects alike everywhere, what arrives is the emission over what is not reflected, whatever the lobes.
+TEST_F(TriangleGathering, AGlowingBoxKeepsItsLight)
+{
+    struct Surface
+    {
+        float base, roughness, metallic;
+    };
+    for (const Surface& surface : {Surface{0.6f, 1.0f, 0.0f}, {0.6f, 0.2f, 0.0f}, {0.6f, 0.3f, 1.0f}, {0.6f, 0.5f, 0.7f}, {0.9f, 0.2f, 1.0f}})
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        const uint32_t material = mesh.material("glowing", vec3(surface.base), surface.roughness, surface.metallic);
+        scene.materials[material].emission = vec3(2.0f);
+        mesh.box(vec3(-1.0f), vec3(1.0f), material);
+        const FieldData field = bake(scene, {vec3(0.1f, 0.2f, 0.15f)}, 64);
+        const float albedo = Pure<float>::hemisphericalAlbedo({vec3(surface.base), surface.metallic, surface.roughness}).g;
+        const double truth = 2.0 / (1.0 - albedo);
+        double mean = 0.0;
+        const std::vector<Texel> texels = texelsOf(field, 0);
+        for (const Texel& texel : texels) mean += texel.light.g / double(texels.size());
+        // Lobes are sampled without their weight at grazing angles: bright metal, reflected on and on, is the hardest.
+        EXPECT_NEAR(mean / truth, 1.0, surface.base > 0.8f ? 0.06 : 0.02)
+            << "base " << surface.base << ", roughness " << surface.roughness << ", metallic " << surface.metallic;
+    }
+}
+
+/// Mean radiance, weighted by the cosine, from a square lamp of radiance 1 about `middle`, parallel to y = 0: brute force over its cells.
+/// @param mirror  colour at normal incidence of a metal mirror in y = 0 that it is seen in; 1: none
+double fromLamp(vec3 middle, float half, vec3 at, vec3 normal, double mirror = 1.0)
+{
+    constexpr int kCells = 200;
+    const double cell = 2.0 * half / kCells;
+    double sum = 0.0;
+    for (int i = 0; i < kCells * kCells; ++i)
+    {
+        const glm::dvec3 point(middle.x - half + (i % kCells + 0.5) * cell, middle.y, middle.z - half + (i / kCells + 0.5) * cell);
+        const glm::dvec3 to = point - glm::dvec3(at);
+        const double d2 = glm::dot(to, to), d = std::sqrt(d2);
+        const double cosine = std::abs(to.y) / d, reflected = mirror + (1.0 - mirror) * std::pow(1.0 - cosine, 5.0);
+        sum += reflected * std::max(glm::dot(to, glm::dvec3(normal)) / d, 0.0) * cosine * cell * cell / (std::numbers::pi * d2);
+    }
+    return sum;
+}
+
+// A mirror as floor before a black wall: the wall has the lamp's light and that of its image, and below a screen that keeps the lamp from it
+// the image's alone. Taken as scattered, what the mirror throws on falls where it doesn't.
+TEST_F(TriangleGathering, AMirrorThrowsLightOn)
+{
+    constexpr float kReflected = 0.7f, kHalf = 0.4f;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t black = mesh.material("black", vec3(0.0f), 1.0f);
+    mesh.box(vec3(-6.0f, -0.2f, -6.0f), vec3(6.0f, 0.0f, 6.0f), mesh.material("mirror", vec3(kReflected), 0.0f, 1.0f));
+    mesh.box(vec3(3.0f, 0.0f, -6.0f), vec3(3.2f, 4.0f, 6.0f), black);
+    const vec3 lamp(0.0f, 1.5f, 0.0f), image(0.0f, -1.5f, 0.0f);
+    mesh.quad(lamp + vec3(-kHalf, 0, -kHalf), lamp + vec3(kHalf, 0, -kHalf), lamp + vec3(kHalf, 0, kHalf), lamp + vec3(-kHalf, 0, kHalf),
+              mesh.emitter("lamp", vec3(10.0f)));
+    const FieldData field = bake(scene, {vec3(1.8f, 1.0f, 0.3f)}, 4);
+    double sum = 0.0, truth = 0.0, direct = 0.0;
+    for (const Texel& texel : texelsOf(field, 0))
+    {
+        if (texel.normal.x > -0.99f || texel.position.y < 0.2f || texel.position.y > 2.0f || std::abs(texel.position.z) > 1.5f) continue;
+        const double own = 10.0 * fromLamp(lamp, kHalf, texel.position, texel.normal);
+        sum += texel.light.g;
+        direct += own;
+        truth += own + 10.0 * fromLamp(image, kHalf, texel.position, texel.normal, kReflected);
+    }
+    EXPECT_GT(truth, 1.4 * direct) << "the mirror has a say";
+    EXPECT_NEAR(sum / truth, 1.0, 0.04); // the black wall itself reflects 4 %, which the mirror sends back
+}
+
+// What no probe sees scatters light all the same: a probe below a shelf knows as much of what comes from above it as where another probe sees
+// that.
+TEST_F(TriangleGathering, LightFromWhereNoProbeSeesArrives)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.8f), 1.0f);
+    mesh.box(vec3(-2.0f, 0.0f, -2.0f), vec3(2.0f, 3.0f, 2.0f), white);
+    mesh.box(vec3(-1.5f, 1.9f, -1.5f), vec3(1.5f, 2.0f, 1.5f), white);
+    mesh.quad({-0.5f, 2.3f, -0.5f}, {0.5f, 2.3f, -0.5f}, {0.5f, 2.3f, 0.5f}, {-0.5f, 2.3f, 0.5f}, mesh.emitter("lamp", vec3(5.0f)));
+    const vec3 below(0.1f, 1.0f, 0.2f), above(0.0f, 2.65f, 0.0f);
+    const FieldData one = bake(scene, {below}, 12), two = bake(scene, {below, above}, 12);
+    double alone = 0.0, together = 0.0;
+    for (const Texel& texel : texelsOf(one, 0)) alone += texel.light.g;
+    for (const Texel& texel : texelsOf(two, 0)) together += texel.light.g;
+    EXPECT_NEAR(alone / together, 1.0, 0.03);
+}
+
+TEST_F(TriangleGathering, WhatRaysGoToIsNamedOrRefused)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("white", vec3(0.5f)));
+    BakeSettings settings;
+    settings.gather = "triangle";
+    const auto made = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::badArgument);
+    EXPECT_NE(made.error().message.find("gather is triangle"), std::string::npos) << made.error().message;
+}
+
+} // namespace
+} // namespace sconce
