@@ -292,10 +292,12 @@ inline constexpr std::string_view kGathers[] = {"triangles", "field"};
 inline constexpr Knob<std::string_view> gather{
     .name = "gather",
     .option = "bake --gather",
-    .member = "BakeSettings::gather",
+    .member = "BakeSettings::rays",
     .value = "triangles",
     .only = kGathers,
-    .what = "What the rays that gather surface light meet: the scene's triangles, exactly and on the processor, or the light field on the device",
+    .what = "What the rays that gather surface light meet: the scene's triangles, exactly and on the processor, or the light field on the "
+            "device, which is "
+            "all that a host gives who brings no rays",
     .buys = "no light through walls and sharper shadows; time where the device is faster than the processor",
     .readme = true};
 inline constexpr std::string_view kCharts[] = {"cube", "octahedral"}; // in the order of gpu::kChartCube, kChartOctahedral

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "scene/scene.h"
+#include "scene/exact_rays.h"
 
 namespace sconce
 {
@@ -22,26 +22,18 @@ enum class Presence : uint8_t
 };
 std::vector<Presence> trianglePresence(const Scene& scene);
 
-/// Exact questions to the triangles of a scene, answered by Embree: nothing else in the project includes it. Surfaces are met from both
-/// sides; points whose alpha is below their material's cutoff are not there. Safe from many threads. The scene must outlive it.
-class TriangleRays
+/// ExactRays answered by Embree: nothing else in the project includes it. The scene must outlive it.
+class TriangleRays final : public ExactRays
 {
 public:
-    struct Hit
-    {
-        float t = 0.0f;          // in lengths of the direction
-        uint32_t triangle = 0;   // index into Scene::triangles
-        vec2 barycentrics{0.0f}; // weights of the second and third vertex
-    };
-
     /// A scene without triangles is allowed: every ray misses. Errors: deviceFailure when Embree can't be started, outOfMemory.
     static Result<TriangleRays> build(const Scene& scene);
     TriangleRays(TriangleRays&&) noexcept;
     TriangleRays& operator=(TriangleRays&&) noexcept;
-    ~TriangleRays();
+    ~TriangleRays() override;
 
-    std::optional<Hit> closest(vec3 origin, vec3 direction, float tFar = std::numeric_limits<float>::infinity()) const;
-    bool occluded(vec3 origin, vec3 direction, float tFar) const;
+    std::optional<Hit> closest(vec3 origin, vec3 direction, float tFar = std::numeric_limits<float>::infinity()) const override;
+    bool occluded(vec3 origin, vec3 direction, float tFar) const override;
     /// seen[i] becomes whether nothing lies between `from` and to[i], for the i whose seen[i] is not 0 yet; the rest stays 0. Eight rays at
     /// a time: fastest when neighbours in `to` are neighbours in space.
     void unoccluded(vec3 from, std::span<const vec3> to, std::span<uint8_t> seen) const;
@@ -52,7 +44,7 @@ public:
     /// Metres to the nearest triangle, or `farthest` when none is nearer. Masked triangles count whole.
     float nearest(vec3 point, float farthest) const;
 
-    const Scene& scene() const;
+    const Scene& scene() const override;
     const std::vector<Presence>& presence() const; // [triangles]
 
 private:
@@ -60,8 +52,5 @@ private:
     explicit TriangleRays(std::unique_ptr<State> owned);
     std::unique_ptr<State> state;
 };
-
-/// Half the gap by which rays must start off a surface, metres: beyond the rounding of any position in the scene.
-float rayOffset(const Scene& scene);
 
 } // namespace sconce

@@ -10,6 +10,7 @@
 #include "runtime/frame/effect_plan.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
+#include "scene/triangle_rays.h"
 #include "tools/field_report.h"
 #include "tools/quality_option.h"
 
@@ -23,7 +24,7 @@ struct BakeOptions
 {
     SceneOptions scene;
     BakeSettings settings;
-    std::string probes, output, device, effects = "auto";
+    std::string probes, output, device, effects = "auto", gather{knobs::gather.value};
     uint64_t memoryMb = knobs::deviceMebibytes.value;
     QualityOption quality;
 };
@@ -62,6 +63,13 @@ int runBake(const BakeOptions& options, const Context& context)
     // The bake knows positions alone: how a probe came to be where it is makes no difference to its light.
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
+    std::optional<TriangleRays> rays;
+    if (options.gather == knobs::kGathers[0])
+    {
+        auto built = TriangleRays::build(*scene);
+        if (!built) return fail(built.error());
+        settings.rays = &rays.emplace(std::move(*built));
+    }
     BakeReport report;
     Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
     if (!field) return fail(field.error());
@@ -114,7 +122,7 @@ void addBakeCommand(CLI::App& app, Context& context)
     addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
     addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
     addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
-    addKnob(bake, "--gather", settings.gather, knobs::gather);
+    addKnob(bake, "--gather", options->gather, knobs::gather);
     addChoice(bake, "--chart", settings.chart, knobs::chart);
     addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
     bake->add_option(

@@ -164,8 +164,7 @@ Status measureValues(CompareResult& result, const std::vector<float>& left, cons
     if (settings.mse) result.mse = whole ? meanSquaredError(left, right) : nan;
     if (settings.relMse) result.relMse = whole ? relativeMeanSquaredError(left, right) : nan;
     if (settings.mean) result.mean = whole ? meanOverMean(left, right) : nan;
-    if (settings.psnr)
-        result.psnr = whole ? peakSignalToNoise(left, right, settings.exposure.value_or(autoExposure(right))) : nan;
+    if (settings.psnr) result.psnr = whole ? peakSignalToNoise(left, right, settings.exposure.value_or(autoExposure(right))) : nan;
     std::vector<std::vector<float>> parts;
     for (const char* name : kParts)
         if (const Layer* part = reference.find(settings.layer + name))

@@ -42,7 +42,8 @@ struct CompareSettings
     bool mean = true;
     std::optional<float> exposure; // set: PSNR and LDR-FLIP at it. Unset: PSNR at the reference's autoExposure, and HDR-FLIP
     float pixelsPerDegree = 67.0f; // of FLIP
-    bool sameSurface = false;      // leaves out pixels in which the two see different surfaces: by their layer `depth`, more than kOtherSurface apart
+    bool sameSurface =
+        false; // leaves out pixels in which the two see different surfaces: by their layer `depth`, more than kOtherSurface apart
 };
 inline constexpr float kOtherSurface = 0.01f; // relative difference of depth
 

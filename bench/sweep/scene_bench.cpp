@@ -23,6 +23,7 @@
 #include "runtime/field/field_space.h"
 #include "runtime/field/light_field_file.h"
 #include "scene/scene_check.h"
+#include "scene/triangle_rays.h"
 
 namespace sconce
 {
@@ -167,7 +168,6 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     bake.chart = settings.chart();
     bake.bounces = settings.bounces;
     bake.surfaceTexels = settings.bakedSurfaceTexels();
-    if (settings.fieldGather) bake.gather = "field";
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
     if (bake.grid && bake.chart == gpu::kChartOctahedral) bake.bounceShader = gridBouncePass();
@@ -181,7 +181,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
                                        {"chart", bake.chart},
                                        {"bounces", bake.bounces},
                                        {"surface", bake.surfaceTexels},
-                                       {"gather", bake.gather},
+                                       {"gather", settings.fieldGather},
                                        {"voxels", bake.octree.voxels}});
     const std::filesystem::path file = cached("fields", key, ".sconce");
     if (const std::optional<Json> known = readJson(cached("fields", key, ".json")))
@@ -194,6 +194,13 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : probes->set.probes) positions.push_back(probe.position);
     BakeReport report;
+    std::optional<TriangleRays> rays;
+    if (bake.surfaceTexels > 0 && !settings.fieldGather)
+    {
+        auto built = TriangleRays::build(desc.scene);
+        if (!built) return built.error();
+        bake.rays = &rays.emplace(std::move(*built));
+    }
     auto field = bakeLightField(gpu.host, desc.scene, positions, bake, progress, report);
     if (!field) return field;
     for (const SceneEffect& effect : checkScene(desc.scene).effects)

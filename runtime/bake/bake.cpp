@@ -55,8 +55,7 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
     const std::string fault =
         firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
-                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays),
-                    faultOf(knobs::gather, settings.gather)});
+                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -138,7 +137,7 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     // The octree is built from a copy of all maps on the device, which for a software device is main memory again.
     const uint64_t texels = 6ull * info.surfaceSize * info.surfaceSize; // of surface light: links, what bounces need, the light itself
     const uint64_t tilts = info.surfaceDirections != 0 ? 6 : 0;         // words a texel
-    const uint64_t cells = texels > 0 && settings.gather == knobs::kGathers[0] ? 6 * kCellsOfProbe : 0; // facings; their links stay here
+    const uint64_t cells = texels > 0 && settings.rays ? 6 * kCellsOfProbe : 0; // facings; their links stay here
     const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 14 + tilts : 0)) + cells * settings.surfaceRays;
     const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 || surface > 0 ? 3 : 2) * light +
                            (emitters ? light : 0) + surface;
@@ -184,8 +183,7 @@ struct Bake
     Result<LightField> asItIs(Gpu& gpu);
     Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage, Spirv shader);
     Status bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
-    Status surfaceLight(Gpu& gpu, const Scene& scene, const DeviceScene& deviceScene, ProbeBaker& baker, const BakeSettings& settings,
-                        BakeReport& spent);
+    Status surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
 };
 
 Status Bake::directLight(ProbeBaker& baker)
@@ -268,24 +266,16 @@ Status Bake::bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, 
 }
 
 /// Light at the surfaces that probes see, and the probes' radiance of it.
-Status Bake::surfaceLight(Gpu& gpu, const Scene& scene, const DeviceScene& deviceScene, ProbeBaker& baker, const BakeSettings& settings,
-                          BakeReport& spent)
+Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent)
 {
     Stopwatch watch;
     auto dark = asItIs(gpu);
     if (!dark) return dark.error();
     const uint32_t shadowRays = std::min(settings.surfaceRays, gpu::kMostShadowRays);
-    std::optional<TriangleRays> triangles;
     std::optional<TriangleGather> exact;
-    if (settings.gather == knobs::kGathers[0])
-    {
-        auto built = TriangleRays::build(scene);
-        if (!built) return built.error();
-        triangles.emplace(std::move(*built));
-        exact.emplace(*triangles, field, texels, deviceScene.lights(), TriangleGather::Desc{settings.surfaceRays, shadowRays});
-    }
+    if (settings.rays) exact.emplace(*settings.rays, field, texels, scene.lights(), TriangleGather::Desc{settings.surfaceRays, shadowRays});
     auto surfaces = SurfaceBaker::create(
-        gpu, deviceScene, *dark, texels,
+        gpu, scene, *dark, texels,
         {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr});
     if (!surfaces) return surfaces.error();
     for (size_t i = 0; i < field.probes.size(); ++i)
@@ -413,7 +403,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
         if (settings.bounces > 0 || info.surfaceSize > 0) bake.direct = bake.field.radiance;
         spent.energy.push_back(meanRadiance(bake.field));
-        const Status bounced = info.surfaceSize > 0 ? bake.surfaceLight(**gpu, scene, *deviceScene, **baker, settings, spent)
+        const Status bounced = info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
                                                     : bake.bounces(**gpu, **baker, settings, spent);
         if (!bounced) return bounced.error();
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;

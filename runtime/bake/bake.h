@@ -10,6 +10,7 @@
 #include "runtime/scene/device_scene.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "runtime/vulkan/pipeline.h"
+#include "scene/exact_rays.h"
 #include "scene/probe_grid.h"
 #include "svo/build_octree.h"
 
@@ -25,11 +26,11 @@ struct BakeSettings
     float converged = knobs::converged.value;        // stop earlier, after a bounce that adds less than this share of all light; 0: never
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // texels a side of a cube face of the surface light; 0: none
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
-    std::string gather{knobs::gather.value};             // of knobs::kGathers: what those rays go to
-    DeviceSceneDesc scene;                               // textures and lights
-    std::vector<std::string> effects;                    // names of the plan's effects, kept in the file for reports
-    bool radiance = true;                                // keep the maps' radiance, which traced rays need: half of the field
-    bool prefiltered = true;                             // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
+    const ExactRays* rays = nullptr;  // to the triangles of the scene that is baked, that gather it; null: through the field
+    DeviceSceneDesc scene;            // textures and lights
+    std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
+    bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
+    bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid;                // set when the probes are a uniform one
     Spirv bounceShader;                           // with bake_bounce.comp's interface; empty: our own

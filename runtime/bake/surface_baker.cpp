@@ -47,7 +47,8 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     for (const Need& need :
          {Need{first, texels() * 16, "first light at surfaces"}, Need{light, texels() * 16, "light at surfaces"},
           Need{sent, texels() * 4, "light that surfaces send"}, Need{sentBefore, texels() * 4, "light that surfaces sent"},
-          Need{reflected, texels() * 4, "light by specular reflection at surfaces"}, Need{filtered, words() * 4, "filtered light at surfaces"},
+          Need{reflected, texels() * 4, "light by specular reflection at surfaces"},
+          Need{filtered, words() * 4, "filtered light at surfaces"},
           Need{tilts, directions() ? texels() * 16 : 0, "tilts of light at surfaces"},
           Need{tilted, directions() ? texels() * 4 : 0, "filtered tilts of light at surfaces"},
           Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
@@ -75,7 +76,8 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     auto cleared = gpu->submit(
         [&](VkCommandBuffer cmd)
         {
-            for (const Buffer* buffer : {&first, &light, &sentBefore, &reflected}) gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+            for (const Buffer* buffer : {&first, &light, &sentBefore, &reflected})
+                gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
             if (directions()) gpu->vk.CmdFillBuffer(cmd, tilts.handle(), 0, VK_WHOLE_SIZE, 0);
         });
     if (!cleared) return cleared;
@@ -127,7 +129,8 @@ Status SurfaceBaker::gatherTriangles(uint32_t probe)
     std::vector<vec4> straight(count), arriving(count), moments(directions() ? count : 0);
     std::vector<gpu::SurfaceTexel> sending(count);
     std::vector<uint32_t> shine(count);
-    desc.triangles->gather(probe, {std::span(links).subspan(probe * count * desc.rays, count * desc.rays), straight, arriving, shine, moments, sending});
+    desc.triangles->gather(
+        probe, {std::span(links).subspan(probe * count * desc.rays, count * desc.rays), straight, arriving, shine, moments, sending});
     const auto write = [&](const Buffer& buffer, const auto& values)
     { return values.empty() ? success() : gpu->upload(buffer, probe * count * sizeof(values[0]), std::as_bytes(std::span(values))); };
     if (auto status = write(first, straight); !status) return status;

@@ -12,16 +12,16 @@ namespace sconce
 {
 
 /// Gathers light at the surface points of all probes' texels (shaders/shared/surface_light.h), straight from emitters and sky and bounce by
-/// bounce: rays are traced once, through the field or to the scene's triangles, and each bounce reads what was found where they ended. Each call
-/// submits and waits.
+/// bounce: rays are traced once, through the field or to the scene's triangles, and each bounce reads what was found where they ended. Each
+/// call submits and waits.
 class SurfaceBaker
 {
 public:
     struct Desc
     {
-        uint32_t rays = 0;       // a texel, to gather light
-        uint32_t shadowRays = 0; // a texel, to emitters; at most gpu::kMostShadowRays
-        float offset = 0.0f;     // field units that rays through the field start off their surface
+        uint32_t rays = 0;                         // a texel, to gather light
+        uint32_t shadowRays = 0;                   // a texel, to emitters; at most gpu::kMostShadowRays
+        float offset = 0.0f;                       // field units that rays through the field start off their surface
         const TriangleGather* triangles = nullptr; // gathers in their place, by as many rays
     };
     /// @param field   with distances, octree and surfaceSize; it is only read
@@ -66,10 +66,10 @@ private:
     Pipeline gatherPass, bouncePass, tiltPass, filterPass, cellPass;
     Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
     Buffer tints, reflected;
-    Buffer tilts, tilted;                                                     // the same, where the field has directions
-    std::vector<uint32_t> links;                                              // [probe][ray][texel]
+    Buffer tilts, tilted;        // the same, where the field has directions
+    std::vector<uint32_t> links; // [probe][ray][texel]
     TriangleGather::Cells cells; // by rays to triangles
-    bool lit = false;                                                         // the light without a bounce is made
+    bool lit = false;            // the light without a bounce is made
 };
 
 } // namespace sconce

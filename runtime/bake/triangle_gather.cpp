@@ -39,7 +39,7 @@ struct Gatherer : LightFieldTwin<float>
 
 #include "shaders/shared/gathered_rays.h"
 
-    const TriangleRays& triangles;
+    const ExactRays& triangles;
     const gpu::LightsHeader& lightsHeader;
     std::span<const GpuLight> lights;
     std::span<const EmittingTriangle> emitters;
@@ -50,17 +50,29 @@ struct Gatherer : LightFieldTwin<float>
     size_t slot = 0;           // of the texel in it
     vec3 brought{0.0f};        // light of emitters that the rays have brought by specular reflection, summed
 
-    Gatherer(const TriangleRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
+    Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
              std::span<const glm::vec3> tints, std::span<uint32_t> into)
-        : LightFieldTwin<float>(data, {}), triangles(rays), lightsHeader(list.header), lights(list.lights), emitters(list.emitters), desc(wanted), gap(offset),
-          palette(tints), links(into)
+        : LightFieldTwin<float>(data, {}), triangles(rays), lightsHeader(list.header), lights(list.lights), emitters(list.emitters),
+          desc(wanted), gap(offset), palette(tints), links(into)
     {
     }
 
-    vec3 worldOf(vec3 point) const { return field.origin + field.scale * point; }
-    uint gatherRays() const { return desc.rays; }
-    uint shadowRays() const { return desc.shadowRays; }
-    void keepLink(uint i, uint link) { links[size_t(i) * (links.size() / desc.rays) + slot] = link; }
+    vec3 worldOf(vec3 point) const
+    {
+        return field.origin + field.scale * point;
+    }
+    uint gatherRays() const
+    {
+        return desc.rays;
+    }
+    uint shadowRays() const
+    {
+        return desc.shadowRays;
+    }
+    void keepLink(uint i, uint link)
+    {
+        links[size_t(i) * (links.size() / desc.rays) + slot] = link;
+    }
 
     bool emitterReaches(vec3 point, vec3 toLight, float distance_, vec3) const
     {
@@ -85,7 +97,8 @@ struct Gatherer : LightFieldTwin<float>
                 if (turn == 0)
                     emitted += isNearPatch(d2, emitter->patch) ? emitter->emission : vec3(0.0f);
                 else
-                    brought += tint * emitter->emission * (density / (density + densityOfPatch(d2, facingOf(*emitter, direction), emitter->patch)));
+                    brought += tint * emitter->emission *
+                               (density / (density + densityOfPatch(d2, facingOf(*emitter, direction), emitter->patch)));
             }
             const Place place = placeOf(*hit, direction);
             const BrdfLobes lobes = lobesAt(place.surface, -dot(place.shading, direction));
@@ -121,7 +134,7 @@ struct Gatherer : LightFieldTwin<float>
         BrdfSurface surface;
     };
 
-    Place placeOf(const TriangleRays::Hit& hit, vec3 direction) const
+    Place placeOf(const ExactRays::Hit& hit, vec3 direction) const
     {
         const Scene& scene = triangles.scene();
         const uvec3 corner = scene.triangles[hit.triangle];
@@ -215,8 +228,7 @@ struct Gatherer : LightFieldTwin<float>
         if (isMirror(place.surface.roughness)) return vec3(0.0f);
         const Drawn light = drawPatch(place, random);
         if (light.emission == vec3(0.0f)) return vec3(0.0f);
-        const float density =
-            light.density + visibleNormalPdf(place.shading, -direction, light.toLight, ggxAlpha(place.surface.roughness));
+        const float density = light.density + visibleNormalPdf(place.shading, -direction, light.toLight, ggxAlpha(place.surface.roughness));
         return evaluateLobes(lobes, place.surface.roughness, place.shading, -direction, light.toLight).specular *
                (dot(light.toLight, place.shading) / density) * light.emission;
     }
@@ -245,7 +257,8 @@ struct Gatherer : LightFieldTwin<float>
                 far = std::max(length(away), 1e-7f);
                 toLight = away / far;
                 given *= distanceAttenuation(far, light.range);
-                if (light.type == gpu::kLightSpot) given *= spotAttenuation(-dot(toLight, light.direction), light.innerCone, light.outerCone);
+                if (light.type == gpu::kLightSpot)
+                    given *= spotAttenuation(-dot(toLight, light.direction), light.innerCone, light.outerCone);
             }
             const float cosine = dot(toLight, place.normal);
             if (cosine > 0.0f && luminance(given) > 0.0f && emitterReaches(point, toLight, far, place.normal)) sum += cosine * given;
@@ -283,9 +296,15 @@ struct Gatherer : LightFieldTwin<float>
     }
 
     /// A patch seen from within some of its widths is no disc on its axis: there rays that meet its triangle count.
-    static bool isNearPatch(float d2, float patch) { return d2 < kNearPatch * patch; }
+    static bool isNearPatch(float d2, float patch)
+    {
+        return d2 < kNearPatch * patch;
+    }
     static constexpr float kNearPatch = 9.0f; // of its area
-    static float discOf(float) { return 0.0f; }
+    static float discOf(float)
+    {
+        return 0.0f;
+    }
 
     /// Normal of a triangle on the side that a ray along `direction` meets.
     vec3 facing(uint32_t triangle, vec3 direction) const
@@ -339,7 +358,7 @@ namespace
 /// Colours that the scene's metals give what they reflect, the farthest from those before first, where they differ visibly.
 std::vector<vec3> metalTints(const Scene& scene)
 {
-    constexpr int kSteps = 8;                // places of a texture, along each side
+    constexpr int kSteps = 8;              // places of a texture, along each side
     constexpr float kVisiblyOther = 0.02f; // distance of two tints
     std::vector<vec3> all, chosen{vec3(1.0f)};
     for (uint32_t material = 0; material < scene.materials.size(); ++material)
@@ -365,7 +384,7 @@ std::vector<vec3> metalTints(const Scene& scene)
 
 } // namespace
 
-TriangleGather::TriangleGather(const TriangleRays& rays, const FieldData& data, std::span<const gpu::SurfaceTexel> known,
+TriangleGather::TriangleGather(const ExactRays& rays, const FieldData& data, std::span<const gpu::SurfaceTexel> known,
                                const LightList& list, const Desc& wanted)
     : triangles(&rays), field(&data), texels(known), lights(&list), desc(wanted), gap(rayOffset(rays.scene())),
       palette(metalTints(rays.scene()))
@@ -402,11 +421,9 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                         else
                             point += 5e-4f * glm::length(surface.at) * plane; // off it by what its distance is packed to
                         point += 2.0f * gap / field->info.scale * plane;
-                        const vec3 normal =
-                            field->info.surfaceDirections != 0 ? surface.normal : text.unpackNormal8(own[text.slot].normal);
+                        const vec3 normal = field->info.surfaceDirections != 0 ? surface.normal : text.unpackNormal8(own[text.slot].normal);
                         const auto got = text.gatherAt(point, normal, plane, text.pixelOfTexel(glm::uvec3(x, y, face)));
-                        target.sending[text.slot] =
-                            exact ? text.sending(own[text.slot], *exact) : own[text.slot];
+                        target.sending[text.slot] = exact ? text.sending(own[text.slot], *exact) : own[text.slot];
                         target.light[text.slot].w = got.variance;
                         target.reflected[text.slot] = text.packSharedExponent(text.brought / std::max(got.ends.all, 1.0f));
                         target.first[text.slot] = vec4(got.light, text.knowsTooLittle(got.ends, got.asked) ? gpu::kNotKnown : got.reach);
@@ -425,7 +442,7 @@ TriangleGather::Cells TriangleGather::gatherCells() const
                 [&](size_t cell)
                 {
                     const glm::ivec3 at(int(cell % size_t(count.x)), int(cell / size_t(count.x) % size_t(count.y)),
-                                   int(cell / (size_t(count.x) * size_t(count.y))));
+                                        int(cell / (size_t(count.x) * size_t(count.y))));
                     for (int facing = 0; facing < 6; ++facing)
                     {
                         const size_t index = 6 * cell + size_t(facing);
@@ -456,7 +473,8 @@ void TriangleGather::lightCells(const Cells& cells, std::span<const uint32_t> se
             twin::Gatherer::Ends ends{};
             vec3 sum(0.0f);
             for (const uint32_t link : std::span(cells.links).subspan(index * desc.rays, desc.rays))
-                if (text.countEnd(ends, link)) sum += palette[text.tintOfLink(link)] * text.unpackSharedExponent(sent[text.texelOfLink(link)]);
+                if (text.countEnd(ends, link))
+                    sum += palette[text.tintOfLink(link)] * text.unpackSharedExponent(sent[text.texelOfLink(link)]);
             own[facing] = cells.straight[index].x < 0.0f ? 0u : text.packKnownLight(cells.straight[index] + text.perRay(ends) * sum);
         }
     }

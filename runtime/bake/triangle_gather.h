@@ -5,16 +5,16 @@
 
 #include "runtime/field/field_data.h"
 #include "runtime/scene/lights.h"
-#include "scene/triangle_rays.h"
+#include "scene/exact_rays.h"
 #include "shaders/shared/bake_passes.h"
 
 namespace sconce
 {
 
 /// Gathers light at the texels and cells of surface light by rays to the scene's triangles, on all cores: what surface_gather.comp and
-/// cell_gather.comp find by rays through the light field, by the same text (shaders/shared/surface_gather.h) and numbers, but exact, so that no
-/// light comes through a wall and no shadow lacks. Where a surface reflects specularly, a ray goes on by that lobe as often as the lobe has a
-/// share in what is reflected, and ends where it is scattered: glossy floors throw light on. Refers to all that it is made from.
+/// cell_gather.comp find by rays through the light field, by the same text (shaders/shared/surface_gather.h) and numbers, but exact, so
+/// that no light comes through a wall and no shadow lacks. Where a surface reflects specularly, a ray goes on by that lobe as often as the
+/// lobe has a share in what is reflected, and ends where it is scattered: glossy floors throw light on. Refers to all that it is made from.
 class TriangleGather
 {
 public:
@@ -25,7 +25,7 @@ public:
     };
     /// @param field   with distances, octree and surfaceSize
     /// @param texels  of all probes
-    TriangleGather(const TriangleRays& triangles, const FieldData& field, std::span<const gpu::SurfaceTexel> texels, const LightList& lights,
+    TriangleGather(const ExactRays& triangles, const FieldData& field, std::span<const gpu::SurfaceTexel> texels, const LightList& lights,
                    const Desc& desc);
 
     /// What a probe's texels are gathered into, [6 surfaceSize^2] each.
@@ -35,7 +35,7 @@ public:
         std::span<vec4> first;     // SurfacePush::first, light, tilts
         std::span<vec4> light;
         std::span<uint32_t> reflected; // radiance of emitters that comes by specular reflection, RGB9E5
-        std::span<vec4> tilts; // empty: not asked for
+        std::span<vec4> tilts;         // empty: not asked for
         // Becomes what a ray that ends there brings: it reflects by its diffuse lobe alone, as rays that meet the others go on; but the
         // light of what has no extent it reflects by all its lobes as if they were diffuse.
         std::span<gpu::SurfaceTexel> sending;
@@ -57,7 +57,7 @@ public:
     void lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const;
 
 private:
-    const TriangleRays* triangles;
+    const ExactRays* triangles;
     const FieldData* field;
     std::span<const gpu::SurfaceTexel> texels;
     const LightList* lights;

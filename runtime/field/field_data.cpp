@@ -11,7 +11,6 @@ namespace sconce
 namespace
 {
 
-
 } // namespace
 
 FieldBytes bytesByPart(const FieldData& field)

@@ -28,9 +28,9 @@ struct LightSettings
 struct EmittingTriangle
 {
     uint32_t triangle;
-    vec3 emission;   // radiance
-    float patch;     // field units squared that a sample stands for
-    int side;        // 1, -1: only the side of its normal by winding shines, or the other; 0: both
+    vec3 emission; // radiance
+    float patch;   // field units squared that a sample stands for
+    int side;      // 1, -1: only the side of its normal by winding shines, or the other; 0: both
 };
 
 /// The scene's light as a list (order: shaders/shared/lights.h) and the views that its shadow maps are rendered with.
@@ -40,7 +40,7 @@ struct LightList
     std::vector<gpu::GpuLight> lights;
     uint32_t sunLayers = 0, skyLayers = 0, pointLayers = 0, emitterLayers = 0;
     std::vector<EmittingTriangle> emitters; // by triangle
-    LightSettings settings; // with the sizes of maps halved until each kind takes at most kShadowBytes
+    LightSettings settings;                 // with the sizes of maps halved until each kind takes at most kShadowBytes
 };
 inline constexpr int kNoShadowMap = -1; // GpuLight::shadowLayer of a sample that rays shadow
 inline constexpr uint64_t kShadowBytes = uint64_t(128) << 20;

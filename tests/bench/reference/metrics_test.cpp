@@ -1,6 +1,7 @@
 #include "bench/reference/metrics.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -96,6 +97,38 @@ TEST(CompareImages, RefusesOtherSizesLayersAndBrokenReferences)
     ASSERT_TRUE(counted.ok());
     EXPECT_EQ(counted->nonFinitePixels, 1u);
     EXPECT_TRUE(std::isnan(*counted->mse)); // so that no threshold passes
+}
+
+// Four pixels: alike, off by 0.5, seeing another surface, and both seeing the sky.
+TEST(CompareImages, PixelsThatSeeAnotherSurfaceAreLeftOut)
+{
+    constexpr float kSky = std::numeric_limits<float>::infinity();
+    ImageSet picture, reference;
+    for (ImageSet* images : {&picture, &reference})
+    {
+        images->width = images->height = 2;
+        images->add("beauty", 3);
+        std::ranges::fill(images->layers[0].pixels, 1.0f);
+    }
+    for (size_t i = 3; i < 9; ++i) picture.layers[0].pixels[i] = i < 6 ? 1.5f : 100.0f;
+    CompareSettings settings;
+    settings.sameSurface = true;
+    const auto blind = compareImages(picture, reference, settings);
+    ASSERT_FALSE(blind);
+    EXPECT_NE(blind.error().message.find("no layer 'depth'"), std::string::npos) << blind.error().message;
+    for (ImageSet* images : {&picture, &reference}) images->add("depth", 1);
+    picture.layers[1].pixels = {2.0f, 2.01f, 2.0f, kSky};
+    reference.layers[1].pixels = {2.0f, 2.0f, 3.0f, kSky};
+    const auto all = compareImages(picture, reference), same = compareImages(picture, reference, settings);
+    ASSERT_TRUE(all && same);
+    EXPECT_EQ(all->otherSurfacePixels, 0u);
+    EXPECT_GT(*all->mse, 1000.0);
+    EXPECT_EQ(same->otherSurfacePixels, 1u);
+    EXPECT_NEAR(*same->mse, 0.25 / 3.0, 1e-7);
+    EXPECT_NEAR(*same->mean, 3.5 / 3.0, 1e-6);
+    EXPECT_EQ(same->errorMap[2], 0.0f);
+    picture.layers[1].pixels = {9.0f, 9.0f, 9.0f, 9.0f};
+    EXPECT_FALSE(compareImages(picture, reference, settings)) << "none is left";
 }
 
 TEST(ErrorColours, EndsAreMagmasEnds)

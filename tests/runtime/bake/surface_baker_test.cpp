@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "runtime/bake/bake.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
+#include "scene/triangle_rays.h"
 #include "tests/support/device.h"
 #include "tests/support/test_scenes.h"
 
@@ -29,7 +31,8 @@ protected:
         settings.resolution = 128;
         settings.bounces = bounces;
         settings.surfaceTexels = surfaceTexels;
-        settings.gather = gather;
+        std::optional<TriangleRays> rays;
+        if (gather == knobs::kGathers[0]) settings.rays = &rays.emplace(std::move(*TriangleRays::build(scene)));
         settings.octree.voxels = 16;
         auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
         if (!field) throw std::runtime_error(field.error().message);
