@@ -65,6 +65,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.resolution = desc.resolution;
     settings.bounces = desc.bounces;
     settings.converged = desc.converged;
+    settings.rays = desc.rays;
     settings.take(*plan);
     BakeReport report;
     const auto field = bakeLightField(device.gpu().host, capped, probes, settings, progress, report);

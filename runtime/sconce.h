@@ -23,6 +23,7 @@
 #include "runtime/frame/g_buffer.h"
 #include "runtime/vulkan/gpu_timer.h"
 #include "runtime/vulkan/host_vulkan.h"
+#include "scene/exact_rays.h"
 #include "scene/scene_check.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/light_field.h"
@@ -177,10 +178,11 @@ private:
 /// What a light field is baked with. Ranges and prices: knobs above. The command's `bake` has further ones.
 struct BakeDesc
 {
-    uint32_t resolution = 512;    // texels a side of an octahedral map; cube faces have half of it; memory grows with its square
-    uint32_t bounces = 2;         // times the baked light is re-injected at most, 0..64; each costs one gather a texel
-    float converged = 0.0f;       // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
-    std::string effects = "auto"; // as planEffects()
+    uint32_t resolution = knobs::resolution.value; // texels a side of an octahedral map; cube faces have half; memory grows with its square
+    uint32_t bounces = knobs::bounces.value;       // times the baked light is re-injected at most, 0..64; each costs one gather a texel
+    float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
+    std::string effects = "auto";             // as planEffects()
+    const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
 };
 
 /// Bakes a scene at given probes on the host's device and writes the field to a file, whole or not at all. Submits and waits. Same input,
