@@ -54,7 +54,7 @@ Result<std::vector<bool>> sameSurfaces(const ImageSet& a, const ImageSet& refere
     for (size_t p = 0; p < same.size(); ++p)
     {
         const float d = left->pixels[p], truth = right->pixels[p];
-        same[p] = d == truth || std::abs(d - truth) <= kOtherSurface * std::abs(truth); // equal where both are infinite, the sky
+        same[p] = d == truth || (std::isfinite(truth) && std::abs(d - truth) <= kOtherSurface * std::abs(truth)); // the sky's are equal
     }
     return same;
 }

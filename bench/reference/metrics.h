@@ -59,7 +59,7 @@ struct CompareResult
     std::optional<double> mean;         // over the reference's
     std::vector<float> errorMap;        // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
     uint64_t nonFinitePixels = 0;       // of the compared picture; any makes the metrics NaN
-    uint64_t otherSurfacePixels = 0;    // left out, see CompareSettings::sameSurface; in the map they are 0
+    uint64_t otherSurfacePixels = 0;    // left out, see CompareSettings::sameSurface; in maps they are as the reference's
 };
 
 /// Compares a layer of two pictures of equal size. Where the reference has the layer's parts (ReferenceSettings::parts), MSE and relMSE

@@ -126,7 +126,7 @@ TEST(CompareImages, PixelsThatSeeAnotherSurfaceAreLeftOut)
     EXPECT_EQ(same->otherSurfacePixels, 1u);
     EXPECT_NEAR(*same->mse, 0.25 / 3.0, 1e-7);
     EXPECT_NEAR(*same->mean, 3.5 / 3.0, 1e-6);
-    EXPECT_EQ(same->errorMap[2], 0.0f);
+    EXPECT_LT(same->errorMap[2], 0.1f) << "of its neighbours alone";
     picture.layers[1].pixels = {9.0f, 9.0f, 9.0f, 9.0f};
     EXPECT_FALSE(compareImages(picture, reference, settings)) << "none is left";
 }

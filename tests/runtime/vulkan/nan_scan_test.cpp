@@ -173,6 +173,8 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"filtered light at surfaces", "as light that surfaces send"},
         {"filtered tilts of light at surfaces", "words of 8 bits a number"},
         {"light that surfaces sent", "as light that surfaces send"},
+        {"light by specular reflection at surfaces", "as light that surfaces send"},
+        {"tints of metals", "from the host: clamped colours over their luminance"},
         {"probe headers", "as distances"},
         {"rays", "from the host: the tracer answers any number"},
         {"tile lists", "integers"},
