@@ -64,7 +64,7 @@ int runBake(const BakeOptions& options, const Context& context)
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
     std::optional<TriangleRays> rays;
-    if (options.gather == knobs::kGathers[0])
+    if (options.gather == knobs::kGathers[0] && settings.surfaceTexels > 0)
     {
         auto built = TriangleRays::build(*scene);
         if (!built) return fail(built.error());
