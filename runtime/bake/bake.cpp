@@ -70,6 +70,20 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     return {};
 }
 
+/// What surface light can't be made of: links (bake_passes.h) name no more texels than their bits, and rays of another scene would light
+/// this one.
+std::string surfaceFault(const gpu::LightFieldInfo& info, const Scene& scene, const BakeSettings& settings)
+{
+    const uint64_t texels = 6ull * info.surfaceSize * info.surfaceSize * info.probeCount, most = 1ull << gpu::kLinkTexelBits;
+    if (texels > most)
+        return fmt::format("surface light of {} probes has {} texels, and it may have {}; give fewer probes or fewer surface texels",
+                           info.probeCount, texels, most);
+    if (settings.rays && settings.rays->scene().triangles.size() != scene.triangles.size())
+        return fmt::format("the rays are of a scene of {} triangles, and that which is baked has {}; give rays of the same scene",
+                           settings.rays->scene().triangles.size(), scene.triangles.size());
+    return {};
+}
+
 /// The cube faces' level 0 words at half their size, each from the plane of one of its four texels, with their chain: what summaries and
 /// octree of an octahedral field are made from.
 void halveFaces(std::span<const uint32_t> faces, uint32_t size, const gpu::LightFieldInfo& half, uint32_t* out)
@@ -342,6 +356,8 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
     info.surfaceSize = surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
     info.surfaceDirections = info.surfaceSize > 0 && hasNormalTextures(scene) ? 1 : 0;
+    if (const std::string fault = surfaceFault(info, scene, settings); !fault.empty())
+        return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
     if (settings.grid)
     {
         info.gridX = uint32_t(settings.grid->count.x);

@@ -154,5 +154,25 @@ TEST_F(TriangleGathering, LightFromWhereNoProbeSeesArrives)
     EXPECT_NEAR(alone / together, 1.0, 0.03);
 }
 
+TEST_F(TriangleGathering, RaysOfAnotherSceneAndTooManyTexelsAreRefused)
+{
+    Scene scene, other;
+    MeshBuilder mesh(scene), otherMesh(other);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("white", vec3(0.5f)));
+    otherMesh.quad({0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, otherMesh.material("white", vec3(0.5f)));
+    const auto rays = TriangleRays::build(other);
+    BakeSettings settings;
+    settings.rays = &*rays;
+    const auto strange = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    ASSERT_FALSE(strange);
+    EXPECT_EQ(strange.error().code, ErrorCode::badArgument);
+    EXPECT_NE(strange.error().message.find("rays are of a scene of 2 triangles"), std::string::npos) << strange.error().message;
+    settings.rays = nullptr;
+    const auto many = bakeLightField(device.host(), scene, std::vector<vec3>(17000, vec3(0.0f)), settings, {}, report);
+    ASSERT_FALSE(many);
+    EXPECT_EQ(many.error().code, ErrorCode::badArgument);
+    EXPECT_NE(many.error().message.find("275808000 texels"), std::string::npos) << many.error().message;
+}
+
 } // namespace
 } // namespace sconce
