@@ -48,7 +48,7 @@ struct Gatherer : LightFieldTwin<float>
     std::span<const glm::vec3> palette;
     std::span<uint32_t> links; // of the probe
     size_t slot = 0;           // of the texel in it
-    vec3 brought{0.0f};        // light of emitters that the rays have brought by specular reflection, summed
+    vec3 brought{0.0f};        // light of emitters and sky that the rays have brought by reflection, summed
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
              std::span<const glm::vec3> tints, std::span<uint32_t> into)
@@ -90,7 +90,12 @@ struct Gatherer : LightFieldTwin<float>
         {
             const auto hit = triangles.closest(from, direction);
             if (turn == 0 && hit) t = hit->t / field.scale;
-            if (!hit) return kLinkSky;
+            if (!hit && turn == 0) return kLinkSky;
+            if (!hit)
+            {
+                brought += tint * field.sky; // a link to the sky has no room for the colour
+                return kLinkDark;
+            }
             if (const EmittingTriangle* emitter = emitterMet(hit->triangle, direction))
             {
                 const float distance_ = hit->t / field.scale, d2 = distance_ * distance_;

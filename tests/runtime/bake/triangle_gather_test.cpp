@@ -136,6 +136,26 @@ TEST_F(TriangleGathering, AMirrorThrowsLightOn)
     EXPECT_NEAR(sum / truth, 1.0, 0.04); // the black wall itself reflects 4 %, which the mirror sends back
 }
 
+// Below a small plate over a mirror of gold the white sky is golden: of each colour by Schlick's mean over the hemisphere, c + (1 - c)
+// / 21.
+TEST_F(TriangleGathering, TheSkyInAMetalHasItsColour)
+{
+    const vec3 gold(0.8f, 0.6f, 0.2f);
+    Scene scene;
+    scene.sky = vec3(1.0f);
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-40.0f, -0.2f, -40.0f), vec3(40.0f, 0.0f, 40.0f), mesh.material("gold", gold, 0.0f, 1.0f));
+    mesh.box(vec3(-0.2f, 1.5f, -0.2f), vec3(0.2f, 1.6f, 0.2f), mesh.material("black", vec3(0.0f), 1.0f));
+    const FieldData field = bake(scene, {vec3(0.1f, 0.8f, 0.05f)}, 2);
+    vec3 sum(0.0f);
+    int below = 0;
+    for (const Texel& texel : texelsOf(field, 0))
+        if (texel.normal.y < -0.99f) sum += texel.light, ++below;
+    ASSERT_GT(below, 5);
+    const vec3 truth = gold + (1.0f - gold) / 21.0f;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / float(below) / truth[c], 1.0f, 0.05f) << c;
+}
+
 // What no probe sees scatters light all the same: a probe below a shelf knows as much of what comes from above it as where another probe
 // sees that.
 TEST_F(TriangleGathering, LightFromWhereNoProbeSeesArrives)
