@@ -11,8 +11,8 @@ layout(scalar, push_constant) uniform Push { BakePush push; };
 /// By the probe's own texels; where they don't show the point, as a pixel finds its light.
 vec3 bounceIrradiance(vec3 point, vec3 normal, vec3 viewer)
 {
-    vec4 own = surfaceTaps(push.probe, point - viewer, normal, normal);
-    if (own.w > kSurfaceLeast) return own.xyz / own.w;
+    SurfaceTaps own = surfaceTaps(push.probe, point - viewer, normal);
+    if (own.weight > kSurfaceLeast) return own.light / own.weight;
     int reads = 0;
     return surfaceLightAt(point, normal, normal, point + 0.5 * field.voxel * normal, reads).light;
 }

@@ -3,6 +3,7 @@
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
+#include "lookups.glsl"
 #include "gather_votes.glsl"
 
 bool nextCandidate(inout Candidates of, out uint probe, out float weight)

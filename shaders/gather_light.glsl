@@ -1,9 +1,8 @@
 // Light that needs no ray, from the pixel's probes weighted by visibility: diffuse by their prefiltered irradiance, rough reflections by their
 // prefiltered radiance. Which probes, their weights and what they hold: candidatesAt(), nextCandidate(), candidateLight() and blendedLight(), which
 // are defined before.
-// Dispatch: see findPixel.
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = kListId) const uint kList = kListGathered;
+// Dispatch: see lookups.glsl.
+layout(local_size_x = 64) in;
 layout(constant_id = kGatherDiffuseId) const bool kDiffuse = true; // make the diffuse light
 layout(constant_id = kGatherRoughId) const bool kRough = true;   // make the rough reflections
 layout(constant_id = kByPatchesId) const bool kByPatches = false; // diffuse light from one probe's patches
@@ -42,25 +41,52 @@ vec3 shareOfSurface(vec3 own, vec3 above)
     return min(own / max(above, vec3(1e-20)), vec3(kMostOfSurface));
 }
 
+/// Radiance that arrives in a lobe from the two probes with the most say; with surface light also what they have in the hemisphere above.
+struct InLobe
+{
+    vec3 radiance;
+    vec3 above;
+};
+
+InLobe radianceInLobe(Heaviest heaviest, vec3 point, vec3 normal, Lobe lobe)
+{
+    float met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there
+    for (int i = 0; i < kRoughProbes; ++i)
+    {
+        if (heaviest.weight[i] <= 0.0) continue;
+        float seen = seenAlong(heaviest.probe[i], point - probeHeader(heaviest.probe[i]).centre, lobe.direction);
+        if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+    }
+    InLobe sum = InLobe(vec3(0.0), vec3(0.0));
+    float weights = 1e-30;
+    for (int i = 0; i < kRoughProbes; ++i)
+    {
+        if (heaviest.weight[i] <= 0.0) continue;
+        float weight = heaviest.weight[i] - 0.999 * heaviest.next; // so that one that leaves the list has no say before
+        vec3 fromProbe = point - probeHeader(heaviest.probe[i]).centre;
+        sum.radiance += weight * lobeRadiance(heaviest.probe[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(heaviest.probe[i], fromProbe, lobe.direction));
+        if (kBySurface)
+            sum.above += weight * lobeRadiance(heaviest.probe[i], fromProbe, Lobe(normal, kWidestLobe), guessedAlong(heaviest.probe[i], fromProbe, normal));
+        weights += weight;
+    }
+    return InLobe(sum.radiance / weights, sum.above / weights);
+}
+
 void main()
 {
-    ivec2 at;
-    if (!findPixel(kList, at)) return;
-    Pixel p = readPixel(at);
+    LookUp lookUp;
+    if (!findLookUp(lookUp)) return;
+    Pixel p = readLookUp(lookUp);
     uint terms = termsOf(p);
     bool wantDiffuse = kDiffuse && !isNotOf(kTermDiffuse, terms), wantRough = kRough && !isNotOf(kTermRough, terms);
     if (!p.surface || !(wantDiffuse || wantRough)) return;
     vec3 point = (p.position - field.origin) / field.scale;
-    TangentFrame tangents = tangentFrame(p.normal);
-    float alpha = ggxAlpha(p.brdf.roughness);
-    Lobe lobe = reflectedLobe(p.normal, p.view, alpha);
-
-    Candidates candidates = candidatesAt(at, p, point, tangents);
+    Candidates candidates = candidatesAt(lookUp.at, p, point, tangentFrame(p.normal));
     vec3 arriving = vec3(0.0);
     float weights = 1e-30;
     Heaviest heaviest = Heaviest(uvec4(0u), vec4(0.0), 0.0);
     uint drawn = kNoProbe;
-    float lot = randomPair(uvec2(at), 0u, 5u, frame.seed).x;
+    float lot = randomPair(uvec2(lookUp.at), 0u, 5u, frame.seed).x;
     uint probe;
     float say;
     while (nextCandidate(candidates, probe, say))
@@ -75,32 +101,17 @@ void main()
     // One probe's patches, drawn by its say; the filter blends what neighbours drew.
     if (wantDiffuse && kByPatches && drawn != kNoProbe)
         arriving = weights * patchIrradiance(drawn, point - probeHeader(drawn).centre, p.normal);
-    if (wantDiffuse) imageStore(diffuse, at, vec4(kByPatches ? arriving / weights : blendedLight(arriving / weights), 1.0));
+    if (wantDiffuse)
+        for (int i = 0; i < lookUp.pixels; ++i)
+            imageStore(diffuse, pixelOf(lookUp, i), vec4(kByPatches ? arriving / weights : blendedLight(arriving / weights), 1.0));
     if (!wantRough) return;
-
-    float met = 0.0; // how far off the lobe's axis meets the nearest surface that a probe sees there
-    for (int i = 0; i < kRoughProbes; ++i)
+    InLobe inLobe = radianceInLobe(heaviest, point, p.normal, reflectedLobe(p.normal, p.view, ggxAlpha(p.brdf.roughness)));
+    for (int i = 0; i < lookUp.pixels; ++i)
     {
-        if (heaviest.weight[i] <= 0.0) continue;
-        float seen = seenAlong(heaviest.probe[i], point - probeHeader(heaviest.probe[i]).centre, lobe.direction);
-        if (seen > 0.0) met = met > 0.0 ? min(met, seen) : seen;
+        ivec2 at = pixelOf(lookUp, i);
+        Pixel own = readPixel(at);
+        vec3 share = kBySurface ? shareOfSurface(imageLoad(diffuse, at).rgb, inLobe.above) : vec3(1.0);
+        // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
+        imageStore(rough, at, vec4(inLobe.radiance * share * specularColor(lobesAt(own.brdf, dot(own.normal, own.view))), 1.0));
     }
-    vec3 inLobe = vec3(0.0), above = vec3(0.0);
-    weights = 1e-30;
-    for (int i = 0; i < kRoughProbes; ++i)
-    {
-        if (heaviest.weight[i] <= 0.0) continue;
-        float weight = heaviest.weight[i] - 0.999 * heaviest.next; // so that one that leaves the list has no say before
-        vec3 fromProbe = point - probeHeader(heaviest.probe[i]).centre;
-        inLobe += weight * lobeRadiance(heaviest.probe[i], fromProbe, lobe, met > 0.0 ? met : guessedAlong(heaviest.probe[i], fromProbe, lobe.direction));
-        if (kBySurface)
-        {
-            float open = guessedAlong(heaviest.probe[i], fromProbe, p.normal);
-            above += weight * lobeRadiance(heaviest.probe[i], fromProbe, Lobe(p.normal, kWidestLobe), open);
-        }
-        weights += weight;
-    }
-    if (kBySurface) inLobe *= shareOfSurface(imageLoad(diffuse, at).rgb, above / weights);
-    // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
-    imageStore(rough, at, vec4(inLobe / weights * specularColor(lobesAt(p.brdf, dot(p.normal, p.view))), 1.0));
 }

@@ -2,34 +2,63 @@
 #extension GL_GOOGLE_include_directive : require
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
+#define SCONCE_TILES_ARE coherent
 #include "tiles.glsl"
+#include "lookups.glsl"
 
 // Diffuse light of all sources but the host's own, read from the surface light of the probes that see the pixel. No sample, no filter. Rough
-// reflections are scaled by it, so their pixels have it, too.
-// Dispatch: see findPixel.
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = kListId) const uint kList = kTermDiffuse;
+// reflections are scaled by it, so their pixels have it, too. What no probe shows is left to a second dispatch: where lanes are vectors, few that search
+// for it would have all wait.
+// Dispatch: see lookups.glsl.
+layout(local_size_x = 64) in;
+layout(constant_id = kLookUpRestId) const uint kRest = 0u; // the list that look-ups are left to
+layout(constant_id = kIsRestId) const bool kIsRest = false; // this is the second dispatch
 layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
 
-void main()
+void leave(LookUp l)
 {
-    ivec2 at;
-    if (!findPixel(kList, at)) return;
-    Pixel p = readPixel(at);
-    uint terms = termsOf(p);
-    if (!p.surface || (isNotOf(kTermDiffuse, terms) && (kList == kTermDiffuse || isNotOf(kTermRough, terms)))) return;
-    vec3 point = (p.position - field.origin) / field.scale;
+    uint index = atomicAdd(lookUpRuns[kRest].count, 1u);
+    atomicMax(lookUpRuns[kRest].y, index / 64u / kTileRow + 1u);
+    tiles[lookUpWord(kRest, index)] = uint(l.at.x) | (uint(l.at.y) << 16) | (l.pixels > 1 ? kLookUpOfQuad : 0u);
+}
+
+/// Of what no texel shows by its shading normal: bad smooth normals can be bent so far that nothing seems to be of the surface.
+SurfaceLight lightOfRest(LookUp l, Pixel p, vec3 point)
+{
     int reads = 0;
-    // Bad smooth normals can be bent so far that nothing seems to be of the surface.
     vec3 facing = p.normal;
     SurfaceLight found;
     for (int attempt = 0; attempt < 2; ++attempt)
     {
-        SurfaceLight light = surfaceLightAt(point, p.normal, facing, point + 0.5 * field.voxel * facing, reads);
+        SurfaceLight light = surfaceLightOf(point, p.normal, facing, point + 0.5 * field.voxel * facing, reads);
         if (attempt == 0 || light.probes >= 0) found = light;
         if (light.probes >= 0) break;
-        facing = geometricNormalAt(at, p);
+        facing = geometricNormalAt(l.at, readPixel(l.at));
         if (dot(facing, facing) < 0.5 || dot(facing, p.normal) > kSurfaceBend) break;
     }
-    imageStore(diffuse, at, vec4(found.light, float(found.probes)));
+    return found;
+}
+
+void main()
+{
+    LookUp lookUp;
+    if (!findLookUp(lookUp)) return;
+    Pixel p = readLookUp(lookUp);
+    if (!p.surface) return;
+    vec3 point = (p.position - field.origin) / field.scale;
+    int reads = 0;
+    SurfaceLight found;
+    if (kIsRest) found = lightOfRest(lookUp, p, point);
+    else found = surfaceLightSeen(point, p.normal, point + 0.5 * field.voxel * p.normal, reads).light;
+    if (!kIsRest && found.probes == 0)
+    {
+        leave(lookUp);
+        return;
+    }
+    for (int i = 0; i < lookUp.pixels; ++i)
+    {
+        ivec2 at = pixelOf(lookUp, i);
+        vec3 normal = field.surfaceDirections != 0u && lookUp.pixels > 1 ? texelFetch(gNormalRoughness, at, 0).xyz : p.normal;
+        imageStore(diffuse, at, vec4(lightOn(normal, found), float(found.probes)));
+    }
 }

@@ -1,10 +1,14 @@
 // Which pixel an invocation works on: a pass runs on the tiles of a list, or over the whole picture. After gbuffer_read.glsl.
 layout(constant_id = kTiledId) const bool kTiled = true; // false: over the whole picture, every pixel computed, needed or not
-layout(scalar, set = 1, binding = kTileBinding) readonly buffer SconceTiles
+#ifndef SCONCE_TILES_ARE
+#define SCONCE_TILES_ARE readonly // a pass that adds to the lists says: coherent
+#endif
+layout(scalar, set = 1, binding = kTileBinding) SCONCE_TILES_ARE buffer SconceTiles
 {
-    TileRuns runs[kListCount];
-    TileRuns sparseRuns[kListCount]; // of passes whose workgroups take several tiles each
-    // [list][as many as the picture has]: x | y << 16; then [tile][row]: the terms of its 8 pixels, kTermCount bits each
+    TileRuns runs[kTermCount];
+    TileRuns sparseRuns[kTermCount]; // of passes whose workgroups take several tiles each
+    TileRuns lookUpRuns[kMostLookUpLists];
+    // [list][as many as the picture has]: x | y << 16; then [tile][row]: the terms of its 8 pixels, kTermCount bits each; then [look-ups' list][64 a tile]: x | y << 16, bit 31: of four
     uint tiles[];
 };
 
@@ -28,7 +32,7 @@ ivec2 tileOrigin(uint list, uint index)
 uint termsAt(ivec2 at)
 {
     uvec2 tile = uvec2(at) / kTileSide, all = (frame.size + kTileSide - 1u) / kTileSide;
-    uint row = kListCount * all.x * all.y + kTileSide * (tile.y * all.x + tile.x) + uint(at.y) % kTileSide;
+    uint row = kTermCount * all.x * all.y + kTileSide * (tile.y * all.x + tile.x) + uint(at.y) % kTileSide;
     return (tiles[row] >> (kTermCount * (uint(at.x) % kTileSide))) & ((1u << kTermCount) - 1u);
 }
 

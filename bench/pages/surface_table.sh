@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Diffuse light read at surfaces against what it replaced, the probes' irradiance with shadowed samples and a filter: errors, mean and time of a
 # frame, bake time and bytes; pixels in which both see the same surface. Prints the rows of bench/results/surface_light.json.
-# surface_table.sh [SCENE[=COUNT]...] as bench/pages/effects_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180],
-# FRAMES=N timed, the median counts [5], RESOLUTION=texels [256], SPP=paths a pixel [512; Sponza, four times as many], OUT=folder, whose references are kept [out/surfaces].
+# surface_table.sh [SCENE[=COUNT]...] as bench/pages/effects_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH of the pictures
+# [320x180], TIMED=WxH [960x540], FRAMES=N timed, the median counts [5], RESOLUTION=texels [256], SPP=paths a pixel [512; Sponza, four times as many], OUT=folder, whose references are kept [out/surfaces].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 scenes=${SCONCE_SCENES:-../shared/scenes}
-out=${OUT:-out/surfaces} size=${SIZE:-320x180} frames=${FRAMES:-5} resolution=${RESOLUTION:-256} spp=${SPP:-512}
+out=${OUT:-out/surfaces} size=${SIZE:-320x180} frames=${FRAMES:-5} resolution=${RESOLUTION:-256} spp=${SPP:-512} timed=${TIMED:-960x540}
 [[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
 sconce=${SCONCE:-build/release/tools/sconce}
 list=("$@")
@@ -27,8 +27,9 @@ for entry in "${list[@]}"; do
     [[ -f $at.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --size "$size" --spp "$paths" --bounces 8 --pixel-centre -o "$at.ref.exr" --quiet > /dev/null
     for texels in 0 52; do
         "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --bounces 8 --surface-texels $texels --effects all -o "$at.sconce" --json --quiet > "$at.$texels.bake.json"
-        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" -o "$at.$texels.exr" --json --quiet > "$at.$texels.json"
-        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" --frames "$frames" --effects diffuse -o "$at.alone.exr" --json --quiet > "$at.$texels.alone.json"
+        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$size" -o "$at.$texels.exr" --quiet > /dev/null
+        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$timed" --frames "$frames" -o "$at.timed.exr" --json --quiet > "$at.$texels.json"
+        "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --size "$timed" --frames "$frames" --effects diffuse -o "$at.timed.exr" --json --quiet > "$at.$texels.alone.json"
         "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer diffuse_indirect --same-surface --metric relmse,flip,mean --json --side-by-side "$at.$texels.png" > "$at.$texels.diffuse.json"
         "$sconce" compare "$at.$texels.exr" "$at.ref.exr" --layer glossy_indirect --same-surface --metric flip,mean --json > "$at.$texels.glossy.json"
     done

@@ -97,6 +97,22 @@ Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipe
                     {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}});
 }
 
+/// Of the pass that reads light at surfaces, whose light scales rough reflections, too, and of what it leaves; then of the one that gathers
+/// light at probes.
+std::vector<TileList::LookUps> IndirectLight::State::lookUps() const
+{
+    constexpr uint32_t diffuse = 1u << gpu::kTermDiffuse, rough = 1u << gpu::kTermRough;
+    const IndirectEffects& effects = desc.effects;
+    std::vector<TileList::LookUps> lists;
+    const bool bent = field.info().surfaceDirections;
+    const uint32_t alsoRough = effects.rough ? rough : 0;
+    if (readsSurfaces()) lists = {{diffuse | alsoRough, bent ? gpu::kLookUpsBent : gpu::kLookUpsPerQuad}, {0, gpu::kLookUpsPerPixel}};
+    const uint32_t gathered = (gathersDiffuse() ? diffuse : 0) | alsoRough;
+    // Each pixel draws one probe's patches by lot.
+    if (gathered != 0) lists.push_back({gathered, effects.patches ? gpu::kLookUpsPerPixel : gpu::kLookUpsPerQuad});
+    return lists;
+}
+
 Status IndirectLight::State::makeGather()
 {
     const IndirectEffects& effects = desc.effects;
@@ -108,7 +124,7 @@ Status IndirectLight::State::makeGather()
     return makePass(gatherPass, gatherSet, shader, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
                     {{gpu::kGatherDiffuseId, gathersDiffuse() ? 1u : 0u},
                      {gpu::kGatherRoughId, effects.rough ? 1u : 0u},
-                     {gpu::kListId, gatherList()},
+                     {gpu::kLookUpListId, gatherLookUps()},
                      {gpu::kByPatchesId, effects.patches ? 1u : 0u},
                      {gpu::kBySurfaceId, readsSurfaces() ? 1u : 0u}});
 }
@@ -127,17 +143,19 @@ Status IndirectLight::State::make()
     const IndirectEffects& effects = desc.effects;
     if (effects.diffuse || effects.rough || effects.glossy || effects.mirror)
     {
-        auto tiles = TileList::create(*gpu, frame, {desc.width, desc.height, everyLog(), effects.tiles});
+        auto tiles = TileList::create(*gpu, frame, {desc.width, desc.height, everyLog(), effects.tiles, lookUps()});
         if (!tiles) return tiles.error();
         tileList = std::make_unique<TileList>(std::move(*tiles));
     }
     if (gathersDiffuse() || readsSurfaces())
         if (auto s = makeImage(diffuseImage, kLightFormat, "diffuse light"); !s) return s;
     if (readsSurfaces())
-        if (auto s = makePass(surfacePass, surfaceSet, surface_light_comp, {{gpu::kSurfaceDiffuseBinding, &diffuseImage}},
-                              {{gpu::kListId, surfaceList()}});
-            !s)
-            return s;
+        for (uint32_t isRest : {0u, 1u})
+            if (auto s = makePass(isRest ? surfaceRestPass : surfacePass, surfaceSet, surface_light_comp,
+                                  {{gpu::kSurfaceDiffuseBinding, &diffuseImage}},
+                                  {{gpu::kLookUpListId, isRest}, {gpu::kLookUpRestId, 1}, {gpu::kIsRestId, isRest}});
+                !s)
+                return s;
     if (gathersDiffuse() || effects.rough)
         if (auto s = makeGather(); !s) return s;
     if (tracesDiffuse())
@@ -205,17 +223,18 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         work();
         if (timer) timer->end(cmd);
     };
-    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, uint32_t list, const char* name, uint32_t tilesLog = 0)
+    const auto run = [&](const Pipeline& pipeline, const DescriptorSet& set, auto&& dispatch)
     {
-        if (!pipeline) return;
-        timed(name,
-              [&]
-              {
-                  const VkDescriptorSet sets[] = {field.descriptorSet(), set.handle()};
-                  pipeline.bind(cmd, sets);
-                  tileList->dispatch(cmd, list, tilesLog);
-              });
+        const VkDescriptorSet sets[] = {field.descriptorSet(), set.handle()};
+        pipeline.bind(cmd, sets);
+        dispatch();
     };
+    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, auto&& dispatch)
+    {
+        if (pipeline) timed(name, [&] { run(pipeline, set, dispatch); });
+    };
+    const auto onTiles = [&](uint32_t term, uint32_t tilesLog = 0) { return [=, this] { tileList->dispatch(cmd, term, tilesLog); }; };
+    const auto byLookUps = [&](uint32_t list) { return [=, this] { tileList->dispatchLookUps(cmd, list); }; };
     const auto scan = [&](const char* name, std::initializer_list<const GpuImage*> images)
     {
         for (const GpuImage* image : images)
@@ -223,20 +242,30 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     };
     // Ahead of all passes, which run by its lists.
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
-    pass(surfacePass, surfaceSet, surfaceList(), "surface light");
+    const auto readSurfaces = [&]
+    {
+        for (const Pipeline* surface : {&surfacePass, &surfaceRestPass})
+        {
+            run(*surface, surfaceSet, byLookUps(surface == &surfaceRestPass));
+            // The first adds to the list that the second runs by, and both may write to the lists that all later passes run by, as far as a
+            // driver can tell. The light that they store is read by the gathering pass, which scales rough reflections by it.
+            memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                              VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+        }
+    };
+    if (surfacePass) timed("surface light", readSurfaces);
     scan("surface light", {&diffuseImage});
-    if (surfacePass && gatherPass) // which scales rough reflections by the light at surfaces
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
-    pass(gatherPass, gatherSet, gatherList(), "gather light");
+    pass(gatherPass, gatherSet, "gather light", byLookUps(gatherLookUps()));
     scan("gather light", {&diffuseImage, &roughImage});
-    pass(diffusePass, diffuseSet, gpu::kTermDiffuse, "diffuse trace", everyLog());
+    pass(diffusePass, diffuseSet, "diffuse trace", onTiles(gpu::kTermDiffuse, everyLog()));
     scan("diffuse trace", {&diffuseImage});
-    pass(glossyPass, glossySet, gpu::kTermGlossy, "glossy trace", everyLog());
+    pass(glossyPass, glossySet, "glossy trace", onTiles(gpu::kTermGlossy, everyLog()));
     scan("glossy trace", {&glossyImage});
     // Write after write: both traces store counts into one image. Passes before them share no image, so that nothing stands between those.
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-    pass(mirrorPass, mirrorSet, gpu::kTermMirror, "mirror trace");
+    pass(mirrorPass, mirrorSet, "mirror trace", onTiles(gpu::kTermMirror));
     scan("mirror trace", {&mirrorImage});
     if (glossyFill || diffuseFill)
     {
@@ -244,9 +273,9 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         // fills: each has an image of its own.
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-        pass(diffuseFill, diffuseFillSet, gpu::kTermDiffuse, "diffuse fill");
+        pass(diffuseFill, diffuseFillSet, "diffuse fill", onTiles(gpu::kTermDiffuse));
         scan("diffuse fill", {&diffuseImage});
-        pass(glossyFill, glossyFillSet, gpu::kTermGlossy, "glossy fill");
+        pass(glossyFill, glossyFillSet, "glossy fill", onTiles(gpu::kTermGlossy));
         scan("glossy fill", {&glossyImage});
     }
     // After the fill: where the trace is sparse, most pixels have no light before it that a filter could take.

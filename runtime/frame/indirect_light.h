@@ -30,7 +30,7 @@ struct IndirectLight::State
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
     DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, glossyFillSet, diffuseFillSet;
-    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, gatherPass, glossyFill, diffuseFill;
+    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, glossyFill, diffuseFill;
     Denoiser denoiser;
 
     State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes);
@@ -56,11 +56,8 @@ private:
     uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
     bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
     bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }
-    uint32_t surfaceList() const { return desc.effects.rough ? gpu::kListGathered : gpu::kTermDiffuse; }
-    uint32_t gatherList() const // of the tiles that the gathering pass runs on
-    {
-        return !gathersDiffuse() ? gpu::kTermRough : desc.effects.rough ? gpu::kListGathered : gpu::kTermDiffuse;
-    }
+    std::vector<TileList::LookUps> lookUps() const;
+    uint32_t gatherLookUps() const { return readsSurfaces() ? 2 : 0; } // the gathering pass's list of them
 };
 
 Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc,

@@ -1,5 +1,7 @@
 #include "runtime/frame/tile_list.h"
 
+#include <cassert>
+
 #include "spirv/classify_tiles_comp.h"
 
 namespace sconce
@@ -7,18 +9,19 @@ namespace sconce
 namespace
 {
 
-constexpr uint32_t kRuns = 2 * gpu::kListCount; // of passes, then of sparse passes
+constexpr uint32_t kRuns = 2 * gpu::kTermCount + gpu::kMostLookUpLists; // of passes, of sparse passes, of look-ups
 
 } // namespace
 
 Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& desc)
 {
+    assert(desc.lookUps.size() <= gpu::kMostLookUpLists);
     TileList made;
     made.gpu = &gpu;
     made.desc = desc;
     made.across = (desc.width + gpu::kTileSide - 1) / gpu::kTileSide;
     made.down = (desc.height + gpu::kTileSide - 1) / gpu::kTileSide;
-    const VkDeviceSize words = VkDeviceSize(gpu::kListCount + gpu::kTileSide) * made.across * made.down;
+    const VkDeviceSize words = VkDeviceSize(gpu::kTermCount + gpu::kTileSide + 64 * desc.lookUps.size()) * made.across * made.down;
     auto lists =
         gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
@@ -29,7 +32,12 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& des
     made.set = std::move(*set);
     made.set.write(gpu::kTileBinding, made.lists);
     const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
-    const ShaderConstant constants[] = {{gpu::kEveryLogId, desc.everyLog}};
+    std::vector<ShaderConstant> constants = {{gpu::kEveryLogId, desc.everyLog}, made.constant()};
+    for (uint32_t list = 0; list < desc.lookUps.size(); ++list)
+    {
+        constants.push_back({gpu::kLookUpTermsId + list, desc.lookUps[list].terms});
+        constants.push_back({gpu::kLookUpKindId + list, desc.lookUps[list].kind});
+    }
     auto pipeline = Pipeline::compute(gpu, classify_tiles_comp, layouts, 0, constants);
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
@@ -60,9 +68,14 @@ void TileList::record(VkCommandBuffer cmd) const
 void TileList::dispatch(VkCommandBuffer cmd, uint32_t list, uint32_t everyLog) const
 {
     if (desc.tiled)
-        gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (list + (everyLog > 0 ? gpu::kListCount : 0)) * sizeof(gpu::TileRuns));
+        gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (list + (everyLog > 0 ? gpu::kTermCount : 0)) * sizeof(gpu::TileRuns));
     else
         gpu->vk.CmdDispatch(cmd, across, ((down - 1) >> everyLog) + 1, 1);
+}
+
+void TileList::dispatchLookUps(VkCommandBuffer cmd, uint32_t list) const
+{
+    gpu->vk.CmdDispatchIndirect(cmd, lists.handle(), (2 * gpu::kTermCount + list) * sizeof(gpu::TileRuns));
 }
 
 } // namespace sconce

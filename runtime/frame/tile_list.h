@@ -7,17 +7,24 @@
 namespace sconce
 {
 
-/// Which tiles of a frame need which term, and which terms each pixel has (shaders/shared/frame.h): classified on the device from the
-/// G-buffer, so that each pass runs only where it is called for, and filters ask a neighbour's terms by one read. Cost: one read of the
-/// G-buffer a pixel.
+/// Which tiles of a frame need which term, which terms each pixel has, and what passes look up (shaders/shared/frame.h): classified on the
+/// device from the G-buffer, so that each pass runs only where it is called for, and filters ask a neighbour's terms by one read. Cost: one
+/// read of the G-buffer a pixel.
 class TileList
 {
 public:
+    /// A list of look-ups (shaders/lookups.glsl).
+    struct LookUps
+    {
+        uint32_t terms; // bits, any of which makes a pixel one of the list
+        uint32_t kind;  // gpu::kLookUpsPerPixel...
+    };
     struct Desc
     {
-        uint32_t width = 0, height = 0; // pixels
-        uint32_t everyLog = 0;          // log2 of the tiles that a workgroup of a sparse pass takes
-        bool tiled = true;              // false: passes run over the whole picture, with the same pixels
+        uint32_t width = 0, height = 0;    // pixels
+        uint32_t everyLog = 0;             // log2 of the tiles that a workgroup of a sparse pass takes
+        bool tiled = true;                 // false: passes run over the whole picture, with the same pixels
+        std::vector<LookUps> lookUps = {}; // at most gpu::kMostLookUpLists
     };
     /// @param frame  the gpu::FrameView, a uniform buffer
     static Result<TileList> create(Gpu& gpu, const Buffer& frame, const Desc& desc);
@@ -27,6 +34,8 @@ public:
     /// Dispatches the bound pass over a list's tiles, or over the whole picture.
     /// @param everyLog  log2 of the tiles that a workgroup takes: 0, or Desc's
     void dispatch(VkCommandBuffer cmd, uint32_t list, uint32_t everyLog = 0) const;
+    /// Dispatches the bound pass, which includes shaders/lookups.glsl, over a list of look-ups.
+    void dispatchLookUps(VkCommandBuffer cmd, uint32_t list) const;
     ShaderConstant constant() const { return {gpu::kTiledId, desc.tiled ? 1u : 0u}; } // of passes that include shaders/tiles.glsl
 
     const Buffer& buffer() const { return lists; } // their gpu::kTileBinding

@@ -3,6 +3,7 @@
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
+#include "lookups.glsl"
 #include "opponents/grid_light.glsl"
 
 struct Candidates

@@ -3,6 +3,7 @@
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
+#include "lookups.glsl"
 #include "opponents/volume.h"
 // Diffuse light from a volume of irradiance, SCONCE_VOLUME of volume.h: what users of engines would have instead of ours. Rough reflections it has
 // none.

@@ -28,16 +28,21 @@ const uint kTermRough = 1u;  // reflections from prefiltered radiance
 const uint kTermGlossy = 2u; // reflections by traced rays
 const uint kTermMirror = 3u; // one traced ray, never filtered
 const uint kTermCount = 4u;
-const uint kListGathered = 4u; // tiles of the diffuse or of the rough term, which one pass makes together
-const uint kListCount = 5u;
 
 const float kFilterReach = 15.0f; // pixels, of all steps of a term's filter together
 const float kNotTraced = -1.0f;   // in place of a ray's length: the pixel is made from its neighbours
 
 const uint kTileSide = 8u;      // pixels; a workgroup
-const uint kTileRow = 128u;     // tiles a row of an indirect dispatch has
+const uint kTileRow = 128u;     // workgroups a row of an indirect dispatch has
 
-/// Where a list's passes run: the arguments of their indirect dispatch and the number of tiles in the list.
+// Light that is looked up in maps, whose texels span many pixels, is looked up once for 2x2 pixels that show one flat surface.
+const uint kLookUpsPerPixel = 1u;
+const uint kLookUpsPerQuad = 2u; // of like normals and roughness
+const uint kLookUpsBent = 3u;    // of normals that textures bend
+const uint kLookUpOfQuad = 0x80000000u; // in a list's word
+const uint kMostLookUpLists = 3u;
+
+/// Where a list's passes run: the arguments of their indirect dispatch and the number of tiles, or look-ups, in the list.
 struct TileRuns
 {
     uint x;

@@ -45,7 +45,7 @@ const uint kTermId = 3u;
 const uint kEveryLogId = 4u; // trace_glossy.comp, reconstruct.comp, classify_tiles.comp
 const uint kCountId = 5u;    // trace_glossy.comp
 const uint kBlendedId = 6u;  // denoise.comp
-const uint kListId = 7u;     // gather_light.comp, surface_light.comp
+const uint kLookUpListId = 7u;  // passes by look-ups
 const uint kGatherDiffuseId = 8u;
 const uint kGatherRoughId = 9u;
 const uint kByPatchesId = 10u;
@@ -53,6 +53,10 @@ const uint kMadeId = 11u; // compose.comp
 const uint kDiffuseLayerId = 12u;
 const uint kGlossyLayerId = 13u;
 const uint kBySurfaceId = 14u; // gather_light.comp
+const uint kLookUpRestId = 15u;  // surface_light.comp: the list that it leaves look-ups to
+const uint kIsRestId = 16u;      // surface_light.comp
+const uint kLookUpTermsId = 17u; // classify_tiles.comp: of the first list, the bits of its terms; then of the next; 0: it lists none
+const uint kLookUpKindId = 20u;  // of the first list, kLookUpsPerPixel...; then of the next
 
 struct DenoisePush
 {

@@ -101,11 +101,16 @@ SCONCE_FN uint packKnownLight(vec3 light)
     return word == 0u ? kBlackWord : word;
 }
 
-/// A vector along a plane, in axes that the plane's normal alone decides.
-SCONCE_PURE vec2 alongPlane(vec3 v, vec3 normal)
+/// The first of two axes along a plane, which its normal alone decides.
+SCONCE_PURE vec3 firstAlong(vec3 normal)
 {
     vec3 side = abs(normal.x) < real(0.6) ? vec3(real(1.0), real(0.0), real(0.0)) : vec3(real(0.0), real(1.0), real(0.0));
-    vec3 first = normalize(cross(normal, side));
+    return normalize(cross(normal, side));
+}
+
+SCONCE_PURE vec2 alongPlane(vec3 v, vec3 normal)
+{
+    vec3 first = firstAlong(normal);
     return vec2(dot(v, first), dot(v, cross(normal, first)));
 }
 
@@ -121,24 +126,35 @@ SCONCE_PURE vec2 unpackTilt(uint bits)
     return vec2(real(bits & 255u) - real(127.0), real((bits >> 8) & 255u) - real(127.0)) * (kMostTilt / real(127.0));
 }
 
-/// Light that a normal bent off a texel's plane, by a texture say, gets, over that of the plane. The hemisphere above the plane is cut off by another at
-/// that angle, which of even light leaves (1 + cos) / 2; what more comes from one side is linear in the normal.
-SCONCE_PURE real lightOfBent(vec3 normal, vec3 plane, vec2 tilt)
+/// How the light on a texel's plane grows where a normal bends off it, by a texture say: 0.5 + its dot product with the normal is what that gets over what
+/// the plane gets. The hemisphere above the plane is cut off by another at that angle, which of even light leaves (1 + cos) / 2; what more comes from one
+/// side is linear in the normal.
+SCONCE_PURE vec3 growthOf(vec3 plane, vec2 tilt)
 {
-    real share = real(0.5) + real(0.5) * dot(normal, plane) + dot(tilt, alongPlane(normal, plane));
-    return clamp(share, real(0.0), kMostBent);
+    vec3 first = firstAlong(plane);
+    return real(0.5) * plane + tilt.x * first + tilt.y * cross(plane, first);
 }
 
 SCONCE_FN vec2 tiltOf(uint texel) { return unpackTilt(surfaceWord(surfaceTexels() + texel / 2u) >> (16u * (texel & 1u))); }
 
-/// Sum of the four taps about a point that lie on its surface, and of their weights, bilinear. Cost: 8 reads, 12 with directions.
+struct SurfaceTaps
+{
+    vec3 light;  // sum of the taps' light
+    vec3 growth; // sum of growthOf() them, by their luminance
+    real weight; // sum, bilinear, of those that lie on the surface
+};
+
+/// The four taps about a point. Cost: 8 reads, 12 with directions.
 /// @param point   relative to the probe's centre
-/// @param normal  that the light falls on; `facing`: of the surface
-SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal, vec3 facing)
+/// @param facing  of the surface, unit
+SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
 {
     int face = dominantFace(point);
     vec3 uvw = faceCoordinates(face, point);
-    vec4 sum = vec4(real(0.0));
+    SurfaceTaps sum;
+    sum.light = vec3(real(0.0));
+    sum.growth = vec3(real(0.0));
+    sum.weight = real(0.0);
     if (!(uvw.z > real(1e-6))) return sum;
     real middle = real(0.5) * real(field.surfaceSize);
     int last = int(field.surfaceSize) - 1;
@@ -158,9 +174,10 @@ SCONCE_FN vec4 surfaceTaps(uint probe, vec3 point, vec3 normal, vec3 facing)
         uint index = surfaceIndex(probe, face, x, y);
         uint word = surfaceWord(index);
         if (word == 0u) continue;
-        vec3 light = unpackSharedExponent(word);
-        if (field.surfaceDirections != 0u) light *= lightOfBent(normal, texel.normal, tiltOf(index));
-        sum += weight * vec4(light, real(1.0));
+        vec3 light = weight * unpackSharedExponent(word);
+        sum.light += light;
+        sum.weight += weight;
+        if (field.surfaceDirections != 0u) sum.growth += luminance(light) * growthOf(texel.normal, tiltOf(index));
     }
     return sum;
 }
@@ -198,7 +215,8 @@ SCONCE_FN uint nearestSurfaceTexel(uint probe, vec3 point, vec3 normal)
 
 struct SurfaceLight
 {
-    vec3 light; // mean of the arriving radiance, weighted by the cosine
+    vec3 light;  // mean of the arriving radiance, weighted by the cosine
+    vec3 growth; // of what bent normals get, as growthOf(); 0: they get the same
     int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: the cells in the open; -2: the probes' irradiance, which lacks emitters and sky
 };
 
@@ -210,28 +228,45 @@ SCONCE_FN int largestOf(vec4 v)
     return v.x == most ? 0 : (v.y == most ? 1 : (v.z == most ? 2 : 3));
 }
 
-/// Light at a surface point from what its probes see of it: of a leaf's probes the two that see most of it, and of their texels those of the same
-/// surface. Cost: about 25 reads, 33 with directions; up to 50 more where no texel shows the point, and up to 68 where nothing
-/// near it does (light_cells.h).
-/// @param point   field space
-/// @param normal  unit, that the light falls on; `facing`: that of the surface, on the side that is looked at
-/// @param lookUp  point whose leaf is asked
-SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 facing, vec3 lookUp, SCONCE_INOUT(int) reads)
+/// What a normal bent off a surface gets of its light.
+SCONCE_PURE vec3 lightOn(vec3 normal, SCONCE_IN(SurfaceLight) of)
 {
-    SurfaceLight result;
-    result.light = vec3(real(0.0));
-    result.probes = 0;
+    if (!(dot(of.growth, of.growth) > real(0.0))) return of.light;
+    return of.light * clamp(real(0.5) + dot(normal, of.growth), real(0.0), kMostBent);
+}
+
+/// What a leaf's probes see of a surface point.
+struct SurfaceSeen
+{
+    SurfaceLight light; // probes: 0 where no texel shows it
+    uvec4 ranked;       // the leaf's probes
+    uvec2 seeing;       // that see the point without a texel of its surface; kNoProbe
+};
+
+/// Light at a surface point from the two of its leaf's probes that see most of it, of their texels those of the same surface. Cost: about 25 reads,
+/// 33 with directions.
+/// @param point   field space
+/// @param facing  normal of the surface, unit, on the side that is looked at
+/// @param lookUp  point whose leaf is asked
+SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    SurfaceSeen result;
+    result.light.light = vec3(real(0.0));
+    result.light.growth = vec3(real(0.0));
+    result.light.probes = 0;
+    result.seeing = uvec2(kNoProbe);
+    result.ranked = uvec4(0u);
     if (!canGather(point, facing)) return result;
     uvec4 ranked = rankedProbesAt(lookUp, reads);
+    result.ranked = ranked;
     vec4 density = vec4(surfaceDensity(ranked.x, point, facing), surfaceDensity(ranked.y, point, facing),
                         surfaceDensity(ranked.z, point, facing), surfaceDensity(ranked.w, point, facing));
     // A list of fewer repeats some.
     if (ranked.y == ranked.x) density.y = real(0.0);
     if (ranked.z == ranked.x || ranked.z == ranked.y) density.z = real(0.0);
     if (ranked.w == ranked.x || ranked.w == ranked.y || ranked.w == ranked.z) density.w = real(0.0);
-    vec4 sum = vec4(real(0.0));
-    uvec2 seeing = uvec2(kNoProbe); // that see the point without a texel of its surface
-    for (int k = 0; k < kRanked && result.probes < kSurfaceProbes; ++k)
+    real weight = real(0.0);
+    for (int k = 0; k < kRanked && result.light.probes < kSurfaceProbes; ++k)
     {
         int which = largestOf(density);
         if (which < 0) break;
@@ -240,36 +275,60 @@ SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 facing, vec3
         density[which] = real(0.0);
         vec3 fromProbe = point - vec3(probeHeader(probe).centre);
         if (!isSeenBy(probe, fromProbe, facing)) continue;
-        vec4 taps = surfaceTaps(probe, fromProbe, normal, facing);
-        if (taps.w > kSurfaceLeast)
+        SurfaceTaps taps = surfaceTaps(probe, fromProbe, facing);
+        if (taps.weight > kSurfaceLeast)
         {
-            sum += most * taps;
-            ++result.probes;
+            result.light.light += most * taps.light;
+            result.light.growth += most * taps.growth;
+            weight += most * taps.weight;
+            ++result.light.probes;
         }
-        else if (seeing.x == kNoProbe) seeing.x = probe;
-        else if (seeing.y == kNoProbe) seeing.y = probe;
+        else if (result.seeing.x == kNoProbe) result.seeing.x = probe;
+        else if (result.seeing.y == kNoProbe) result.seeing.y = probe;
     }
-    if (result.probes > 0)
+    if (result.light.probes > 0)
     {
-        result.light = vec3(sum.x, sum.y, sum.z) / sum.w;
-        return result;
+        real bright = luminance(result.light.light);
+        result.light.growth = bright > real(0.0) ? result.light.growth / bright : vec3(real(0.0));
+        result.light.light = result.light.light / weight;
     }
+    return result;
+}
+
+/// Light at a surface point, from what near it is known where no texel shows it. Cost: surfaceLightSeen()'s; up to 50 reads more where no texel shows the
+/// point, and up to 68 where nothing near it does (light_cells.h).
+/// @param normal  unit, that the light falls on where no texel shows the point
+/// @return  on the surface itself: see lightOn()
+SCONCE_FN SurfaceLight surfaceLightOf(vec3 point, vec3 normal, vec3 facing, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    SurfaceSeen seen = surfaceLightSeen(point, facing, lookUp, reads);
+    SurfaceLight result = seen.light;
+    if (result.probes > 0 || !canGather(point, facing)) return result;
     uint nearest = kNoTexel;
-    if (seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seeing.x, point - vec3(probeHeader(seeing.x).centre), facing);
-    if (nearest == kNoTexel && seeing.y != kNoProbe)
-        nearest = nearestSurfaceTexel(seeing.y, point - vec3(probeHeader(seeing.y).centre), facing);
+    if (seen.seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seen.seeing.x, point - vec3(probeHeader(seen.seeing.x).centre), facing);
+    if (nearest == kNoTexel && seen.seeing.y != kNoProbe)
+        nearest = nearestSurfaceTexel(seen.seeing.y, point - vec3(probeHeader(seen.seeing.y).centre), facing);
     uint word = 0u;
     if (nearest != kNoTexel) word = surfaceWord(nearest);
     if (word != 0u)
     {
         result.light = unpackSharedExponent(word);
+        if (field.surfaceDirections != 0u) result.growth = growthOf(facing, tiltOf(nearest));
         return result;
     }
-    vec4 open = cellLightAt(lookUp, normal, ranked);
+    vec4 open = cellLightAt(lookUp, normal, seen.ranked);
     result.probes = -1;
     result.light = vec3(open.x, open.y, open.z);
     if (open.w > real(0.0)) return result;
     result.probes = -2;
     result.light = irradianceAt(point, normal, lookUp, reads);
+    return result;
+}
+
+/// The same, on a normal.
+SCONCE_FN SurfaceLight surfaceLightAt(vec3 point, vec3 normal, vec3 facing, vec3 lookUp, SCONCE_INOUT(int) reads)
+{
+    SurfaceLight result = surfaceLightOf(point, normal, facing, lookUp, reads);
+    result.light = lightOn(normal, result);
     return result;
 }

@@ -1,0 +1,41 @@
+// The look-ups of a pass, each for one pixel or for 2x2 that show one flat surface: classify_tiles.comp lists them, so that no invocation idles beside an
+// edge. After tiles.glsl. Dispatch: the list's TileRuns.
+layout(constant_id = kLookUpListId) const uint kLookUpList = 0u;
+
+struct LookUp
+{
+    ivec2 at;   // its pixel, the first where it is for four
+    int pixels; // 1 or 4
+};
+
+uint lookUpWord(uint list, uint index)
+{
+    uvec2 all = (frame.size + kTileSide - 1u) / kTileSide;
+    return (kTermCount + kTileSide + 64u * list) * all.x * all.y + index;
+}
+
+/// @return  whether there is one for this invocation
+bool findLookUp(out LookUp found)
+{
+    uint index = 64u * (gl_WorkGroupID.y * kTileRow + gl_WorkGroupID.x) + gl_LocalInvocationIndex;
+    if (index >= lookUpRuns[kLookUpList].count) return false;
+    uint word = tiles[lookUpWord(kLookUpList, index)];
+    found.at = ivec2(word & 0xffffu, (word >> 16) & 0x7fffu);
+    found.pixels = (word & kLookUpOfQuad) != 0u ? 4 : 1;
+    return true;
+}
+
+ivec2 pixelOf(LookUp l, int i) { return l.at + ivec2(i & 1, i >> 1); }
+
+/// Its pixel, or what is in the middle of four: their place, normal and roughness; the rest as the first has it.
+Pixel readLookUp(LookUp l)
+{
+    Pixel p = readPixel(l.at);
+    if (l.pixels == 1) return p;
+    Pixel q = readPixel(l.at + 1); // across: halfway between is the middle
+    p.position = 0.5 * (p.position + q.position);
+    p.normal = normalize(p.normal + q.normal);
+    p.brdf.roughness = 0.5 * (p.brdf.roughness + q.brdf.roughness);
+    p.view = normalize(frame.eye - p.position);
+    return p;
+}
