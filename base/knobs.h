@@ -288,6 +288,16 @@ inline constexpr Knob<uint32_t> surfaceRays{.name = "surfaceRays",
                                             .unit = "rays",
                                             .what = "That gather light for each texel of the surface light",
                                             .buys = "less blotchy diffuse light; bake time and 4 bytes of main memory a ray and texel"};
+inline constexpr Knob<float> surfaceRefined{
+    .name = "surfaceRefined",
+    .option = "bake --surface-refined",
+    .member = "BakeSettings::surfaceRefined",
+    .value = 0.02f,
+    .least = 0.0f,
+    .most = 0.25f,
+    .what = "Share of the surface light's texels, where light changes most within one, that are refined into 4 x 4, by rays to triangles",
+    .buys = "contact shadows, their edges and light next to lamps; bake time, and 68 bytes a refined texel",
+    .readme = true};
 inline constexpr std::string_view kGathers[] = {"triangles", "field"};
 inline constexpr Knob<std::string_view> gather{
     .name = "gather",

@@ -30,6 +30,7 @@ layout(set = SCONCE_FIELD_SET, binding = kFieldSurfaceBinding) uniform utextureB
 layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
 bool readsFarBounds() { return (kFieldFlags & kReadsFarBounds) != 0u; }
 bool byTexels() { return (kFieldFlags & kByTexels) != 0u; }
+bool holdsRefined() { return (kFieldFlags & kHoldsRefined) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
@@ -76,6 +77,8 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/prefiltered.h"
 #include "shared/light_lookup.h"
 #include "shared/light_cells.h"
+#include "shared/refined.h"
+#include "shared/hidden_light.h"
 #include "shared/surface_light.h"
 #include "shared/ray_query.h"
 /// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.

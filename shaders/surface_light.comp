@@ -7,19 +7,25 @@
 #include "lookups.glsl"
 
 // Diffuse light of all sources but the host's own, read from the surface light of the probes that see the pixel. No sample, no filter. Rough
-// reflections are scaled by it, so their pixels have it, too. What no probe shows is left to a second dispatch: where lanes are vectors, few that search
-// for it would have all wait.
+// reflections are scaled by it, so their pixels have it, too. What no probe shows, and pixels in refined texels, are left to a second dispatch: where
+// lanes are vectors, few that search would have all wait.
 // Dispatch: see lookups.glsl.
 layout(local_size_x = 64) in;
 layout(constant_id = kLookUpRestId) const uint kRest = 0u; // the list that look-ups are left to
 layout(constant_id = kIsRestId) const bool kIsRest = false; // this is the second dispatch
 layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
 
-void leave(LookUp l)
+/// Leaves a look-up, or each of its pixels alone.
+void leave(LookUp l, bool alone)
 {
-    uint index = atomicAdd(lookUpRuns[kRest].count, 1u);
-    atomicMax(lookUpRuns[kRest].y, index / 64u / kTileRow + 1u);
-    tiles[lookUpWord(kRest, index)] = uint(l.at.x) | (uint(l.at.y) << 16) | (l.pixels > 1 ? kLookUpOfQuad : 0u);
+    uint count = alone ? uint(l.pixels) : 1u;
+    uint index = atomicAdd(lookUpRuns[kRest].count, count);
+    atomicMax(lookUpRuns[kRest].y, (index + count - 1u) / 64u / kTileRow + 1u);
+    for (uint i = 0u; i < count; ++i)
+    {
+        uvec2 at = uvec2(pixelOf(l, int(i)));
+        tiles[lookUpWord(kRest, index + i)] = at.x | (at.y << 16) | (!alone && l.pixels > 1 ? kLookUpOfQuad : 0u);
+    }
 }
 
 /// Of what no texel shows by its shading normal: bad smooth normals can be bent so far that nothing seems to be of the surface.
@@ -49,11 +55,17 @@ void main()
     int reads = 0;
     SurfaceLight found;
     if (kIsRest) found = lightOfRest(lookUp, p, point);
-    else found = surfaceLightSeen(point, p.normal, point + 0.5 * field.voxel * p.normal, reads).light;
-    if (!kIsRest && found.probes == 0)
+    else
     {
-        leave(lookUp);
-        return;
+        SurfaceSeen seen = surfaceLightSeen(point, p.normal, point + 0.5 * field.voxel * p.normal, reads);
+        found = seen.light;
+        // In refined texels light changes from pixel to pixel.
+        bool alone = found.probes > 0 && seen.finer && lookUp.pixels > 1;
+        if (found.probes == 0 || alone)
+        {
+            leave(lookUp, alone);
+            return;
+        }
     }
     for (int i = 0; i < lookUp.pixels; ++i)
     {

@@ -150,7 +150,7 @@ void addDiffuseFrom(Json& json, const RenderedFrame& frame)
     size_t all = 0;
     for (const size_t pixels : frame.diffuseFrom) all += pixels;
     if (all == 0) return;
-    const char* const names[] = {"irradiance", "cells", "nearest_texel", "one_probe", "two_probes"};
+    const char* const names[] = {"irradiance", "cells", "hidden", "nearest_texel", "one_probe", "two_probes"};
     for (size_t i = 0; i < frame.diffuseFrom.size(); ++i) json["diffuse_from"][names[i]] = double(frame.diffuseFrom[i]) / double(all);
 }
 

@@ -82,9 +82,11 @@ void printField(const FieldData& field, const std::string& file)
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
               << ", voxels of " << field.octree.voxel * info.scale << " m\n";
     if (info.surfaceSize > 0)
-        std::cout << fmt::format("surface light: {} texels a face's side{}; {}, {} of it in cells of {} m in the open\n", info.surfaceSize,
-                                 info.surfaceDirections != 0 ? " with directions" : "", megabytes(bytes.surface), megabytes(bytes.cells),
-                                 float(1 << info.cellShift) * info.voxel * info.scale);
+        std::cout << fmt::format("surface light: {} texels a face's side{}; {}, {} of it in cells of {} m in the open, {} in {} refined "
+                                 "texels, {} of hidden surfaces\n",
+                                 info.surfaceSize, info.surfaceDirections != 0 ? " with directions" : "", megabytes(bytes.surface),
+                                 megabytes(bytes.cells), float(1 << info.cellShift) * info.voxel * info.scale, megabytes(bytes.refined),
+                                 info.refinedTexels, megabytes(bytes.hidden));
     std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;

@@ -55,7 +55,8 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
         return "scene.light.areaShadows is false; leave it true: the bake shadows emitters and sky by their maps";
     const std::string fault =
         firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
-                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays)});
+                    faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays),
+                    faultOf(knobs::surfaceRefined, settings.surfaceRefined)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -325,7 +326,9 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     if (auto status = reflect(*lit, baker, "radiance", {}); !status) return status;
     // What arrives at a surface has been scattered once less than what it sends: once more, so that frames show as many bounces by either.
     if (auto status = surfaces->bounce(); !status) return status;
-    return surfaces->read(field.surfaceLight);
+    if (auto status = surfaces->read(field.surfaceLight); !status) return status;
+    if (auto status = cancelledIfAsked("refined texels", 0, 1); !status) return status;
+    return surfaces->refine(field, settings.surfaceRefined);
 }
 
 } // namespace

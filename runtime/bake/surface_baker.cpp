@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/numbers.h"
+#include "runtime/bake/hidden_surfaces.h"
+#include "runtime/bake/refined_texels.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "shaders/shared/pure.h"
 
@@ -245,6 +247,16 @@ Status SurfaceBaker::read(std::span<uint32_t> found)
     const std::span<uint32_t> packed = found.subspan(texels(), (texels() + 1) / 2);
     std::ranges::fill(packed, 0u);
     for (size_t i = 0; i < halves.size(); ++i) packed[i / 2] |= halves[i] << (16 * (i & 1));
+    return success();
+}
+
+Status SurfaceBaker::refine(FieldData& lit, float share)
+{
+    if (!desc.triangles) return success();
+    std::vector<uint32_t> before(texels());
+    if (auto status = gpu->download(sentBefore, 0, std::as_writable_bytes(std::span(before))); !status) return status;
+    lightHiddenSurfaces(lit, *desc.triangles, before);
+    refineTexels(lit, *desc.triangles, before, share);
     return success();
 }
 

@@ -38,6 +38,9 @@ public:
     Result<double> meanSent();
     /// The light as FieldData::surfaceLight, filtered, and with that of the cells, which has as many bounces.
     Status read(std::span<uint32_t> light);
+    /// Refines texels of a field whose light was read last.
+    /// @param share  of all texels, at most
+    Status refine(FieldData& lit, float share);
     uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
 
 private:

@@ -338,6 +338,39 @@ struct Gatherer : LightFieldTwin<float>
         return kLinkSurface;
     }
 
+    /// Whether some of a place's rays end at a texel, or pass through the open before a probe on their way to the sky.
+    bool meetsSeen(vec3 point, vec3 normal, uvec2 sample, std::span<const uint32_t> ends)
+    {
+        const TangentFrame tangents = tangentFrame(normal);
+        for (uint i = 0; i < ends.size(); ++i)
+        {
+            if (ends[i] < kLinkDark) return true;
+            if (ends[i] != kLinkSky) continue;
+            for (const float voxels : {2.0f, 6.0f})
+                if (isSeen(point + voxels * field.voxel * gatherDirection(tangents, sample, i))) return true;
+        }
+        return false;
+    }
+
+    bool isSeen(vec3 point)
+    {
+        int reads = 0;
+        const uvec4 ranked = rankedProbesAt(point, reads);
+        for (int k = 0; k < kRanked; ++k)
+            if (!hiddenFromProbe(ranked[k], point - probeHeader(ranked[k]).centre)) return true;
+        return false;
+    }
+
+    /// Mean radiance that a place's rays bring from the texels where they ended.
+    vec3 broughtTo(std::span<const uint32_t> ends, std::span<const uint32_t> sent)
+    {
+        Ends count{};
+        vec3 sum(0.0f);
+        for (const uint32_t link : ends)
+            if (countEnd(count, link)) sum += palette[tintOfLink(link)] * unpackSharedExponent(sent[texelOfLink(link)]);
+        return perRay(count) * sum;
+    }
+
     /// The true surface that a texel's packed one is near, where a ray from the probe meets it, if it does.
     std::optional<Place> findSurface(uint probe, vec3 point, vec3 normal) const
     {
@@ -437,6 +470,47 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                 });
 }
 
+TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec3 texel, std::span<const uint32_t> sent) const
+{
+    constexpr uint32_t kSide = 1u << gpu::kFineLog;
+    std::vector<uint32_t> links(desc.rays);
+    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, links);
+    FinePoints found;
+    for (uint32_t i = 0; i < found.size(); ++i)
+    {
+        const glm::uvec3 at(kSide * texel.x + i % kSide, kSide * texel.y + i / kSide, texel.z);
+        const auto surface = text.surfacePointOf(probe, int(at.z), int(at.x), int(at.y), kSide * field->info.surfaceSize);
+        const vec3 seen = text.probeHeader(probe).centre + surface.at;
+        // What the packed distance isn't exact for isn't refined.
+        const auto exact = surface.width > 0.0f ? text.findSurface(probe, seen, surface.normal) : std::nullopt;
+        if (!exact) continue;
+        const vec3 point = (exact->position - field->info.origin) / field->info.scale + 2.0f * gap / field->info.scale * exact->normal;
+        const vec3 normal = field->info.surfaceDirections != 0 ? surface.normal : exact->shading;
+        text.brought = vec3(0.0f);
+        const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at));
+        if (text.knowsTooLittle(got.ends, got.asked)) continue;
+        found[i] = {got.light, text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f), got.variance, got.reach, true,
+                    true};
+    }
+    return found;
+}
+
+TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, uint32_t rays, glm::uvec2 sample,
+                                               std::span<const uint32_t> sent) const
+{
+    std::vector<uint32_t> links(rays);
+    Desc fewer = desc;
+    fewer.rays = rays;
+    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, links);
+    const auto got = text.gatherAt(point, normal, normal, sample);
+    return {got.light,
+            text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
+            got.variance,
+            got.reach,
+            !text.knowsTooLittle(got.ends, got.asked),
+            text.meetsSeen(point, normal, sample, links)};
+}
+
 TriangleGather::Cells TriangleGather::gatherCells() const
 {
     const glm::ivec3 count = twin::LightFieldTwin<float>(*field, {}).lightCells();
@@ -475,12 +549,8 @@ void TriangleGather::lightCells(const Cells& cells, std::span<const uint32_t> se
         for (size_t facing = 0; facing < 6; ++facing)
         {
             const size_t index = 6 * cell + facing;
-            twin::Gatherer::Ends ends{};
-            vec3 sum(0.0f);
-            for (const uint32_t link : std::span(cells.links).subspan(index * desc.rays, desc.rays))
-                if (text.countEnd(ends, link))
-                    sum += palette[text.tintOfLink(link)] * text.unpackSharedExponent(sent[text.texelOfLink(link)]);
-            own[facing] = cells.straight[index].x < 0.0f ? 0u : text.packKnownLight(cells.straight[index] + text.perRay(ends) * sum);
+            const std::span<const uint32_t> ends = std::span(cells.links).subspan(index * desc.rays, desc.rays);
+            own[facing] = cells.straight[index].x < 0.0f ? 0u : text.packKnownLight(cells.straight[index] + text.broughtTo(ends, sent));
         }
     }
 }

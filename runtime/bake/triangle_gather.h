@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -55,6 +56,29 @@ public:
     /// @param sent   radiance that each texel sends, RGB9E5
     /// @param words  of the cells as FieldData::surfaceLight has them
     void lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const;
+
+    /// Light at one place, as `gather` finds it at a texel's.
+    struct Point
+    {
+        vec3 straight{0.0f}, bounced{0.0f}; // from emitters and sky; all else
+        float variance = 0.0f;              // of the luminance of `straight`, by chance
+        float reach = 0.0f;                 // harmonic mean of the rays' lengths, field units
+        bool known = false;                 // enough of its rays found something
+        bool meetsSeen = false;             // some of them a place that a probe sees
+    };
+    /// At what the 2^kFineLog squared finer texels of a texel see.
+    /// @param texel  x, y, face
+    /// @param sent   radiance that each texel sends, RGB9E5
+    using FinePoints = std::array<Point, size_t(1) << (2 * gpu::kFineLog)>;
+    FinePoints gatherFiner(uint32_t probe, glm::uvec3 texel, std::span<const uint32_t> sent) const;
+
+    /// At a place on a surface that no texel need show.
+    /// @param point   field space, off it by gap()
+    /// @param normal  unit, on the side that is lit
+    /// @param rays    at most Desc's
+    Point gatherAt(vec3 point, vec3 normal, uint32_t rays, glm::uvec2 sample, std::span<const uint32_t> sent) const;
+    float offset() const { return 2.0f * gap / field->info.scale; } // field units that points are off their surface
+    const Scene& scene() const { return triangles->scene(); }
 
 private:
     const ExactRays* triangles;

@@ -26,6 +26,8 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.prefiltered = field.prefiltered.size() * sizeof(uint32_t);
     bytes.radiance = field.radiance.size() * sizeof(uint32_t) + bytes.prefiltered;
     bytes.surface = field.surfaceLight.size() * sizeof(uint32_t);
+    bytes.refined = field.surfaceLight.empty() ? 0 : size_t(gpu::kFineWords) * field.info.refinedTexels * sizeof(uint32_t);
+    bytes.hidden = field.surfaceLight.empty() ? 0 : hiddenWords(field.info) * sizeof(uint32_t);
     bytes.cells = field.surfaceLight.empty() ? 0 : cellWords(field.info) * sizeof(uint32_t);
     bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface;
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
@@ -59,7 +61,7 @@ uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels
     return chart == gpu::kChartCube ? std::min(surfaceTexels, faceSize) : 0;
 }
 
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels, bool directions)
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels, bool directions, float refined)
 {
     const uint32_t size = chartSize(chart, resolution), surface = surfaceSizeOf(chart, size, surfaceTexels);
     const size_t words =
@@ -67,7 +69,8 @@ size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels
     const size_t patches = chart == gpu::kChartCube && surface == 0 ? size_t(2) * gpu::kPatches : 0;
     const size_t cells = surface > 0 ? gpu::kCellWords * kCellsOfProbe : 0;
     const size_t texels = size_t(6) * surface * surface, tilts = directions ? texels / 2 : 0;
-    return (words + patches + texels + tilts + cells) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
+    const size_t finer = gpu::kFineWords * size_t(std::ceil(refined * double(texels)));
+    return (words + patches + texels + tilts + cells + finer) * sizeof(uint32_t) + sizeof(gpu::ProbeHeader);
 }
 
 glm::ivec3 lightCells(const gpu::LightFieldInfo& info)
@@ -89,6 +92,11 @@ size_t surfaceTexelWords(const gpu::LightFieldInfo& info)
 {
     const size_t texels = size_t(6) * info.surfaceSize * info.surfaceSize * info.probeCount;
     return texels + (info.surfaceDirections != 0 ? (texels + 1) / 2 : 0);
+}
+
+size_t hiddenWords(const gpu::LightFieldInfo& info)
+{
+    return size_t(2) * (info.hidden >> gpu::kHiddenShiftBits);
 }
 
 size_t cellWords(const gpu::LightFieldInfo& info)

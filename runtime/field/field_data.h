@@ -44,7 +44,7 @@ struct FieldBytes
 {
     size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches and surface light
     size_t prefiltered = 0;                                                    // of the radiance
-    size_t surface = 0, cells = 0;                                             // surface light with its cells, and those: of the irradiance
+    size_t surface = 0, cells = 0, refined = 0, hidden = 0; // surface light with all that follows its texels, and that: of the irradiance
     size_t total() const { return distance + normals + radiance + irradiance + index; }
 };
 FieldBytes bytesByPart(const FieldData& field);
@@ -62,7 +62,8 @@ uint32_t chartSize(uint32_t chart, uint32_t resolution);
 /// Bytes that every further probe adds to a light field at most, index apart: what a budget of memory is divided by.
 /// @param surfaceTexels  BakeSettings::surfaceTexels
 /// @param directions     whether the scene has normal textures
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value, bool directions = false);
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value, bool directions = false,
+                     float refined = knobs::surfaceRefined.value);
 
 /// Texels a side of a face of the surface light that a bake makes, where so many are asked for; 0 with octahedral maps.
 uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels);
@@ -74,6 +75,8 @@ inline constexpr size_t kCellsOfProbe = 512; // cells of light in the open, at m
 int cellShiftOf(const gpu::LightFieldInfo& info);
 /// Words of FieldData::surfaceLight that the texels of all probes take: their light, then their tilts where the field has directions.
 size_t surfaceTexelWords(const gpu::LightFieldInfo& info);
+/// Those of the light of hidden surfaces, after the cells and the refined texels (shaders/shared/hidden_light.h).
+size_t hiddenWords(const gpu::LightFieldInfo& info);
 /// Those that the cells take after them; 0 without surface light.
 size_t cellWords(const gpu::LightFieldInfo& info);
 

@@ -177,7 +177,7 @@ std::array<uint32_t, 2> LightField::constants() const
     std::array<uint32_t, 2> values{};
     values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
                                  (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
-                                 (shared->byTexels ? gpu::kByTexels : 0u);
+                                 (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

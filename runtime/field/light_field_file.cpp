@@ -153,6 +153,7 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         return fmt::format("its map size {} is not a multiple of 4 from 8 to 4096", i.faceSize);
     if (i.surfaceSize > i.faceSize || (i.surfaceSize > 0 && i.chart != gpu::kChartCube))
         return fmt::format("its surface light of {} texels a side does not fit its maps", i.surfaceSize);
+    if (i.hidden != 0 && i.hidden >> gpu::kHiddenShiftBits == 0) return "its light of hidden surfaces has no slots";
     if (i.surfaceDirections > 1) return fmt::format("its surface light's directions are {}, not 0 or 1", i.surfaceDirections);
     if (i.probeCount > kMostProbes) return fmt::format("its probe count {} is above {}", i.probeCount, kMostProbes);
     if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize)) return "its words per probe disagree with its map size";
@@ -174,7 +175,7 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
         product({n, gpu::kPrefilteredWords, 4}),
         product({n, gpu::kPatches, 8}),
-        texels && cells ? product({*texels + *cells, 4}) : std::nullopt,
+        texels && cells ? product({*texels + *cells + uint64_t(gpu::kFineWords) * i.refinedTexels + hiddenWords(i), 4}) : std::nullopt,
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
@@ -253,6 +254,10 @@ std::string contentProblem(const FieldData& field)
     if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
         return "its scene bounds are not finite";
     const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
+    const size_t texels = size_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount;
+    for (size_t texel = 0; texel < std::min(texels, field.surfaceLight.size()); ++texel)
+        if (const uint32_t word = field.surfaceLight[texel]; word >= gpu::kRefinedWord && word - gpu::kRefinedWord >= i.refinedTexels)
+            return fmt::format("texel {} of its surface light names finer ones that are not there", texel);
     if (field.octree.texels.empty()) return grid || field.probes.empty() ? "" : "it has neither an octree nor a grid to find its probes by";
     return octreeProblem(field);
 }

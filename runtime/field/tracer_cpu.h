@@ -33,6 +33,11 @@ template <class Real> struct LightFieldTwin
     static constexpr int kRanked = gpu::kRanked;
     static constexpr uint kCellWords = gpu::kCellWords;
     static constexpr uint kCellKnown = gpu::kCellKnown;
+    static constexpr uint kHiddenShiftBits = gpu::kHiddenShiftBits;
+    static constexpr int kHiddenTries = gpu::kHiddenTries;
+    static constexpr int kFineLog = gpu::kFineLog;
+    static constexpr uint kFineWords = gpu::kFineWords;
+    static constexpr uint kRefinedWord = gpu::kRefinedWord;
     static constexpr int kPatchSide = gpu::kPatchSide;
     static constexpr uint kPatches = gpu::kPatches;
     static constexpr uint kPrefilteredSize = gpu::kPrefilteredSize;
@@ -86,6 +91,10 @@ template <class Real> struct LightFieldTwin
     {
         return source.prefiltered[index];
     }
+    bool holdsRefined() const
+    {
+        return field.refinedTexels > 0;
+    }
     uint surfaceWord(uint index) const
     {
         return source.surfaceLight[index];
@@ -111,6 +120,10 @@ template <class Real> struct LightFieldTwin
 #include "shaders/shared/light_lookup.h"
 
 #include "shaders/shared/light_cells.h"
+
+#include "shaders/shared/refined.h"
+
+#include "shaders/shared/hidden_light.h"
 
 #include "shaders/shared/surface_light.h"
 

@@ -511,11 +511,11 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index
     {
         std::vector<vec3> light;
         std::vector<float>
-            probes; // SurfaceLight::probes, from -2 on, where a pixel has the term: as termsOf() of shaders/shared/frame.h says
+            probes; // SurfaceLight::probes, from -3 on, where a pixel has the term: as termsOf() of shaders/shared/frame.h says
         if (auto s = colors(light, indirect->state().diffuseImage, general, &probes); !s) return s.error();
         for (size_t i = 0; i < pixels; ++i)
             if (frame.depth[i] > 0.0f && metallic[i] < 1.0f && glm::any(glm::greaterThan(frame.albedo[i], vec3(0.0f))))
-                ++frame.diffuseFrom[size_t(int(probes[i]) + 2)];
+                ++frame.diffuseFrom[size_t(int(probes[i]) + 3)];
     }
     return frame;
 }

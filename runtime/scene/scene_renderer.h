@@ -38,8 +38,8 @@ struct RenderedFrame
     std::vector<float> roughness;
     std::vector<glm::uvec4> counts;      // probe, hand-offs, reads, unknown rays of the glossy trace
     std::vector<GpuTimer::Scope> times;  // milliseconds a pass, by the GPU's clock
-    std::array<size_t, 5> diffuseFrom{}; // pixels whose diffuse light is read at surfaces: of the probes' irradiance alone, of cells in the
-                                         // open, of the nearest texel, of one probe, of two; 0 with other diffuse light
+    std::array<size_t, 6> diffuseFrom{}; // pixels whose diffuse light is read at surfaces: of the probes' irradiance alone, of cells in the
+                                         // open, of hidden surfaces, of the nearest texel, of one probe, of two; 0 with other diffuse light
 };
 
 class SceneRenderer

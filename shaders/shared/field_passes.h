@@ -17,6 +17,7 @@ const uint kFieldFlagsId = 0u;
 const uint kHoldsRadianceId = 1u;
 const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
 const uint kOnOctahedron = 2u;
+const uint kHoldsRefined = 8u; // some texels of the surface light are refined
 const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 
 // The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.

@@ -24,6 +24,11 @@ const uint kPrefilteredWords = 5440u; // of a probe, all levels
 const int kPatchSide = 6;          // patches a side of a cube face: what a probe sees, coarsely, for diffuse light
 const uint kPatches = 216u;        // of a probe
 const uint kCellWords = 7u;        // of a cell of light in the open: light_cells.h
+const int kFineLog = 2;             // log2 of the finer texels a side of a surface texel that is refined: surface_light.h
+const uint kHiddenShiftBits = 4u;
+const int kHiddenTries = 16;          // slots of hidden_light.h that a key may be in
+const uint kRefinedWord = 0xf8000000u; // its word, plus the number of its finer ones
+const uint kFineWords = 17u;       // of a refined one: its mean, then the finer ones
 const uint kCellKnown = 0x40000000u; // of a cell's place: there is one
 const uint kLowFactor = 16u;       // texels of the octahedral map a texel of its low-resolution map covers, per axis
 
@@ -65,9 +70,9 @@ struct LightFieldInfo
     vec3 sky;        // radiance where nothing is hit, W/(m^2 sr)
     uint surfaceDirections; // 1: surface light knows how it changes with the normal; 0: it doesn't
     vec3 sceneLow;   // field space: the scene's bounds
-    float unused2;
+    uint refinedTexels; // of the surface light, of all probes
     vec3 sceneHigh;
-    float unused3;
+    uint hidden; // light of hidden surfaces, hidden_light.h; 0: there is none
 };
 SCONCE_CHECK_SIZE(LightFieldInfo, 192);
 

@@ -107,10 +107,10 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel)
     for (uint i = 0u; i < gatherRays(); ++i)
     {
         vec3 direction = gatherDirection(tangents, pixel, i);
-        uint link = kLinkNone;
+        uint link = kLinkDark; // below the surface
+        got.asked += real(1.0);
         if (dot(direction, plane) > real(0.0))
         {
-            got.asked += real(1.0);
             real t;
             vec3 met;
             // Another sample's numbers: the same one's would be the direction's, shifted, and what a ray ends at must not hang on where it goes.

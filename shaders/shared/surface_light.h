@@ -8,6 +8,9 @@
 // by the cosine (irradiance / pi), of emitters, sky and all that surfaces scatter; what a host's point, spot and directional lights give
 // directly is left out, since it is the host's to draw. RGB9E5; 0: it is sky, or its light is not known.
 //
+// A texel whose light changes within it is refined, into 4 x 4 finer ones: its word's exponent is 31, above any light's, and the rest the number of
+// kFineWords words after all cells: the mean, and the light at what the finer texels see, of the same surface.
+//
 // Where the scene has normal textures (`surfaceDirections`), a texel's light is that on its plane, and 16 bits more tell its tilt: how it grows where
 // the normal leans over, the first moment of the light along the plane over the light itself, two to a word after all texels' light.
 
@@ -23,6 +26,7 @@ SCONCE_CONST real kNearestWidths = real(3.0);
 SCONCE_CONST uint kNoTexel = 0xffffffffu;
 SCONCE_CONST real kMostTilt = real(2.0);      // that is stored
 SCONCE_CONST real kMostBent = real(2.5);      // times a plane's light that a bent normal may get
+SCONCE_CONST real kMostStored = real(32704.0); // the largest light of a lesser exponent
 SCONCE_CONST uint kBlackWord = 0x08000000u; // no light that is known: 0 with another exponent
 
 struct SurfacePoint
@@ -37,10 +41,11 @@ SCONCE_FN uint surfaceIndex(uint probe, int face, int x, int y)
     return ((probe * 6u + uint(face)) * field.surfaceSize + uint(y)) * field.surfaceSize + uint(x);
 }
 
-SCONCE_FN SurfacePoint surfacePointAt(uint probe, int face, int x, int y)
+/// Where a texel of a map of `side` texels a side lies.
+SCONCE_FN SurfacePoint surfacePointOf(uint probe, int face, int x, int y, uint side)
 {
     SurfacePoint p;
-    real finer = real(field.faceSize) / real(field.surfaceSize);
+    real finer = real(field.faceSize) / real(side);
     real fx = floor((real(x) + real(0.5)) * finer);
     real fy = floor((real(y) + real(0.5)) * finer);
     uint word = distanceWord(mapWords(probe, face) + uint(fy) * field.faceSize + uint(fx));
@@ -52,9 +57,17 @@ SCONCE_FN SurfacePoint surfacePointAt(uint probe, int face, int x, int y)
     if (!(q > real(0.0))) return p;
     p.at = faceDirection(face, vec3((fx + real(0.5)) * toUnit - real(1.0), (fy + real(0.5)) * toUnit - real(1.0), real(1.0))) / q;
     p.normal = texelNormal(face, vec2(fx, fy), word);
-    p.width = real(2.0) / (real(field.surfaceSize) * q);
+    if (side > field.faceSize) // several of one distance texel: along its plane
+    {
+        toUnit = real(2.0) / real(side);
+        vec3 through = faceDirection(face, vec3((real(x) + real(0.5)) * toUnit - real(1.0), (real(y) + real(0.5)) * toUnit - real(1.0), real(1.0)));
+        p.at = through * clamp(dot(p.normal, p.at) / min(dot(p.normal, through), real(-1e-6)), real(0.5) / q, real(2.0) / q);
+    }
+    p.width = real(2.0) / (real(side) * q);
     return p;
 }
+
+SCONCE_FN SurfacePoint surfacePointAt(uint probe, int face, int x, int y) { return surfacePointOf(probe, face, x, y, field.surfaceSize); }
 
 /// Whether a surface goes on from a point (relative to the probe, its normal unit) to a texel's.
 /// @param bend  least cosine between the normals
@@ -97,7 +110,7 @@ SCONCE_FN real surfaceDensity(uint probe, vec3 point, vec3 normal)
 /// A texel's light as it is stored where it is known.
 SCONCE_FN uint packKnownLight(vec3 light)
 {
-    uint word = packSharedExponent(light);
+    uint word = packSharedExponent(min(light, vec3(kMostStored)));
     return word == 0u ? kBlackWord : word;
 }
 
@@ -142,9 +155,10 @@ struct SurfaceTaps
     vec3 light;  // sum of the taps' light
     vec3 growth; // sum of growthOf() them, by their luminance
     real weight; // sum, bilinear, of those that lie on the surface
+    bool finer;  // they are of a refined texel
 };
 
-/// The four taps about a point. Cost: 8 reads, 12 with directions.
+/// The four taps about a point, of the finer texels where its own is refined. Cost: 8 reads, 12 with directions, up to 5 more with refined ones.
 /// @param point   relative to the probe's centre
 /// @param facing  of the surface, unit
 SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
@@ -155,11 +169,19 @@ SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
     sum.light = vec3(real(0.0));
     sum.growth = vec3(real(0.0));
     sum.weight = real(0.0);
+    sum.finer = false;
     if (!(uvw.z > real(1e-6))) return sum;
-    real middle = real(0.5) * real(field.surfaceSize);
-    int last = int(field.surfaceSize) - 1;
-    real px = middle * (uvw.x / uvw.z + real(1.0)) - real(0.5);
-    real py = middle * (uvw.y / uvw.z + real(1.0)) - real(0.5);
+    int fineLog = 0; // log2 of the texels a side to one
+    vec2 uv = vec2(uvw.x / uvw.z + real(1.0), uvw.y / uvw.z + real(1.0)) * (real(0.5) * real(field.surfaceSize));
+    if (holdsRefined())
+    {
+        int most = int(field.surfaceSize) - 1;
+        if (isRefined(surfaceWord(surfaceIndex(probe, face, clamp(int(floor(uv.x)), 0, most), clamp(int(floor(uv.y)), 0, most))))) fineLog = kFineLog;
+    }
+    sum.finer = fineLog > 0;
+    int last = (int(field.surfaceSize) << fineLog) - 1;
+    real px = uv.x * real(1 << fineLog) - real(0.5);
+    real py = uv.y * real(1 << fineLog) - real(0.5);
     int x0 = clamp(int(floor(px)), 0, last - 1);
     int y0 = clamp(int(floor(py)), 0, last - 1);
     real fx = clamp(px - real(x0), real(0.0), real(1.0));
@@ -169,10 +191,11 @@ SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
         int x = x0 + (tap & 1);
         int y = y0 + (tap >> 1);
         real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy);
-        SurfacePoint texel = surfacePointAt(probe, face, x, y);
+        SurfacePoint texel = surfacePointOf(probe, face, x, y, field.surfaceSize << uint(fineLog));
         if (!isSameSurface(point, facing, texel, kSurfaceBend)) continue;
-        uint index = surfaceIndex(probe, face, x, y);
+        uint index = surfaceIndex(probe, face, x >> fineLog, y >> fineLog);
         uint word = surfaceWord(index);
+        if (holdsRefined() && isRefined(word)) word = refinedWord(word, fineLog == 0 ? 0u : fineIndex(x, y));
         if (word == 0u) continue;
         vec3 light = weight * unpackSharedExponent(word);
         sum.light += light;
@@ -217,7 +240,7 @@ struct SurfaceLight
 {
     vec3 light;  // mean of the arriving radiance, weighted by the cosine
     vec3 growth; // of what bent normals get, as growthOf(); 0: they get the same
-    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: the cells in the open; -2: the probes' irradiance, which lacks emitters and sky
+    int probes; // that lit the point: 2, 1; 0: the nearest texel; -1: what is known of hidden surfaces there; -2: the cells in the open; -3: the probes' irradiance, which lacks emitters and sky
 };
 
 /// The first component that is largest; -1 when none is above 0.
@@ -241,6 +264,7 @@ struct SurfaceSeen
     SurfaceLight light; // probes: 0 where no texel shows it
     uvec4 ranked;       // the leaf's probes
     uvec2 seeing;       // that see the point without a texel of its surface; kNoProbe
+    bool finer;         // of a refined texel
 };
 
 /// Light at a surface point from the two of its leaf's probes that see most of it, of their texels those of the same surface. Cost: about 25 reads,
@@ -255,6 +279,7 @@ SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCO
     result.light.growth = vec3(real(0.0));
     result.light.probes = 0;
     result.seeing = uvec2(kNoProbe);
+    result.finer = false;
     result.ranked = uvec4(0u);
     if (!canGather(point, facing)) return result;
     uvec4 ranked = rankedProbesAt(lookUp, reads);
@@ -282,6 +307,7 @@ SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCO
             result.light.growth += most * taps.growth;
             weight += most * taps.weight;
             ++result.light.probes;
+            result.finer = result.finer || taps.finer;
         }
         else if (result.seeing.x == kNoProbe) result.seeing.x = probe;
         else if (result.seeing.y == kNoProbe) result.seeing.y = probe;
@@ -304,12 +330,19 @@ SCONCE_FN SurfaceLight surfaceLightOf(vec3 point, vec3 normal, vec3 facing, vec3
     SurfaceSeen seen = surfaceLightSeen(point, facing, lookUp, reads);
     SurfaceLight result = seen.light;
     if (result.probes > 0 || !canGather(point, facing)) return result;
+    vec4 hidden = vec4(real(0.0));
+    if (holdsHidden()) hidden = hiddenLightAt(point, facing);
+    result.probes = -1;
+    result.light = vec3(hidden.x, hidden.y, hidden.z);
+    if (hidden.w > real(0.0)) return result;
+    result.probes = 0;
     uint nearest = kNoTexel;
     if (seen.seeing.x != kNoProbe) nearest = nearestSurfaceTexel(seen.seeing.x, point - vec3(probeHeader(seen.seeing.x).centre), facing);
     if (nearest == kNoTexel && seen.seeing.y != kNoProbe)
         nearest = nearestSurfaceTexel(seen.seeing.y, point - vec3(probeHeader(seen.seeing.y).centre), facing);
     uint word = 0u;
     if (nearest != kNoTexel) word = surfaceWord(nearest);
+    if (holdsRefined() && isRefined(word)) word = refinedWord(word, 0u);
     if (word != 0u)
     {
         result.light = unpackSharedExponent(word);
@@ -317,10 +350,10 @@ SCONCE_FN SurfaceLight surfaceLightOf(vec3 point, vec3 normal, vec3 facing, vec3
         return result;
     }
     vec4 open = cellLightAt(lookUp, normal, seen.ranked);
-    result.probes = -1;
+    result.probes = -2;
     result.light = vec3(open.x, open.y, open.z);
     if (open.w > real(0.0)) return result;
-    result.probes = -2;
+    result.probes = -3;
     result.light = irradianceAt(point, normal, lookUp, reads);
     return result;
 }

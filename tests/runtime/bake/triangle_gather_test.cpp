@@ -1,7 +1,6 @@
 // Light gathered by rays to the scene's triangles, against closed forms and against itself.
 #include "runtime/bake/triangle_gather.h"
 
-#include <numbers>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include "scene/triangle_rays.h"
 #include "shaders/shared/pure.h"
 #include "tests/support/device.h"
+#include "tests/support/square_lamp.h"
 
 namespace sconce
 {
@@ -52,7 +52,8 @@ protected:
         {
             const int face = i / (side * side), y = i / side % side, x = i % side;
             const auto point = text.surfacePointAt(probe, face, x, y);
-            const uint32_t word = field.surfaceLight[text.surfaceIndex(probe, face, x, y)];
+            uint32_t word = field.surfaceLight[text.surfaceIndex(probe, face, x, y)];
+            if (Text::isRefined(word)) word = text.refinedWord(word, 0);
             if (!(point.width > 0.0f) || word == 0) continue;
             found.push_back({field.info.origin + field.info.scale * (field.probes[probe].centre + point.at), point.normal,
                              text.unpackSharedExponent(word)});
@@ -91,24 +92,6 @@ TEST_F(TriangleGathering, AGlowingBoxKeepsItsLight)
     }
 }
 
-/// Mean radiance, weighted by the cosine, from a square lamp of radiance 1 about `middle`, parallel to y = 0: brute force over its cells.
-/// @param mirror  colour at normal incidence of a metal mirror in y = 0 that it is seen in; 1: none
-double fromLamp(vec3 middle, float half, vec3 at, vec3 normal, double mirror = 1.0)
-{
-    constexpr int kCells = 200;
-    const double cell = 2.0 * half / kCells;
-    double sum = 0.0;
-    for (int i = 0; i < kCells * kCells; ++i)
-    {
-        const glm::dvec3 point(middle.x - half + (i % kCells + 0.5) * cell, middle.y, middle.z - half + (i / kCells + 0.5) * cell);
-        const glm::dvec3 to = point - glm::dvec3(at);
-        const double d2 = glm::dot(to, to), d = std::sqrt(d2);
-        const double cosine = std::abs(to.y) / d, reflected = mirror + (1.0 - mirror) * std::pow(1.0 - cosine, 5.0);
-        sum += reflected * std::max(glm::dot(to, glm::dvec3(normal)) / d, 0.0) * cosine * cell * cell / (std::numbers::pi * d2);
-    }
-    return sum;
-}
-
 // A mirror as floor before a black wall: the wall has the lamp's light and that of its image, and below a screen that keeps the lamp from
 // it the image's alone. Taken as scattered, what the mirror throws on falls where it doesn't.
 TEST_F(TriangleGathering, AMirrorThrowsLightOn)
@@ -127,10 +110,10 @@ TEST_F(TriangleGathering, AMirrorThrowsLightOn)
     for (const Texel& texel : texelsOf(field, 0))
     {
         if (texel.normal.x > -0.99f || texel.position.y < 0.2f || texel.position.y > 2.0f || std::abs(texel.position.z) > 1.5f) continue;
-        const double own = 10.0 * fromLamp(lamp, kHalf, texel.position, texel.normal);
+        const double own = 10.0 * testing_support::fromSquareLamp(lamp, kHalf, texel.position, texel.normal);
         sum += texel.light.g;
         direct += own;
-        truth += own + 10.0 * fromLamp(image, kHalf, texel.position, texel.normal, kReflected);
+        truth += own + 10.0 * testing_support::fromSquareLamp(image, kHalf, texel.position, texel.normal, kReflected);
     }
     EXPECT_GT(truth, 1.4 * direct) << "the mirror has a say";
     EXPECT_NEAR(sum / truth, 1.0, 0.04); // the black wall itself reflects 4 %, which the mirror sends back

@@ -79,7 +79,10 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
         field.info.surfaceSize = 4;
         field.info.cellShift = 3;
         field.info.surfaceDirections = 1;
-        field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 * 3 / 2 + cellWords(field.info));
+        field.info.refinedTexels = 2;
+        field.info.hidden = 5u << gpu::kHiddenShiftBits | 1u;
+        field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 * 3 / 2 + cellWords(field.info) + size_t(2) * gpu::kFineWords +
+                                  hiddenWords(field.info));
     }
     for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches, &field.surfaceLight})
         for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
@@ -324,6 +327,15 @@ TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
     field.octree.texels[4 * 2] = 1, field.octree.texels[4 * 2 + 1] = 0, field.octree.texels[4 * 2 + 2] = 0; // brick 1 points to itself
     field.octree.texels[4 * 2 + 3] = 255;
     EXPECT_NE(saveField(field, file).error().message.find("below the finest"), std::string::npos);
+    field = smallField();
+    field.surfaceLight[7] = gpu::kRefinedWord + 2; // of 0 and 1
+    EXPECT_NE(saveField(field, file).error().message.find("texel 7 of its surface light names finer ones"), std::string::npos);
+    field = smallField();
+    field.info.refinedTexels = 3; // the words of two are there
+    EXPECT_NE(saveField(field, file).error().message.find("'surface light' has"), std::string::npos);
+    field = smallField();
+    field.info.hidden = 3; // voxels, but no slots
+    EXPECT_NE(saveField(field, file).error().message.find("no slots"), std::string::npos);
     field = smallField();
     field.info.topShift = 2;
     EXPECT_NE(saveField(field, file).error().message.find("disagrees"), std::string::npos);

@@ -1,0 +1,194 @@
+#include "runtime/bake/hidden_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "runtime/field/tracer_cpu.h"
+#include "scene/closed_parts.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr double kPointsOfVoxel = 8.0; // of a surface that is as large as a voxel's face
+constexpr double kMostPoints = 4e6;    // voxels are larger where there were more
+constexpr uint32_t kPlacesOfKey = 4;   // that are gathered at
+constexpr uint32_t kRaysOfPlace = 16;
+constexpr size_t kMostKeysOfProbe = 1024; // voxels are larger where there were more
+constexpr double kMostKeys = 2147483648.0;
+constexpr uint64_t kHiddenStream = 19; // of random numbers
+
+struct Place
+{
+    uint32_t key;
+    vec3 point; // field space
+    vec3 normal;
+};
+
+struct Text : twin::LightFieldTwin<float>
+{
+    explicit Text(const FieldData& lit) : LightFieldTwin<float>(lit, {}) {}
+
+    bool isHidden(vec3 point, vec3 normal)
+    {
+        int reads = 0;
+        return surfaceLightSeen(point, normal, point + 0.5f * field.voxel * normal, reads).light.probes == 0;
+    }
+    uint32_t keyOf(vec3 point, vec3 normal) { return hiddenKey(glm::ivec3(glm::floor(hiddenPlace(point))), dominantFace(normal)); }
+};
+
+double areaOf(const Scene& scene, uint32_t triangle)
+{
+    const glm::uvec3 corner = scene.triangles[triangle];
+    const vec3 a = scene.positions[corner.x];
+    return 0.5 * double(glm::length(glm::cross(scene.positions[corner.y] - a, scene.positions[corner.z] - a)));
+}
+
+/// log2 of finest voxels a side, so that neither points nor keys are too many.
+uint32_t voxelShift(const FieldData& lit, double area)
+{
+    uint32_t shift = 0;
+    for (;; ++shift)
+    {
+        const double side = double(lit.info.voxel) * lit.info.scale * double(1u << shift);
+        const glm::dvec3 count = glm::ceil(glm::dvec3(glm::ivec3(lit.info.topCells) << lit.info.topShift) / double(1u << shift));
+        if (shift == 15 ||
+            (kPointsOfVoxel * 2.0 * area / (side * side) < kMostPoints && 6.0 * count.x * count.y * count.z + 1.0 < kMostKeys))
+            return shift;
+    }
+}
+
+/// Places on surfaces that no texel shows.
+std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& triangles, double spacing)
+{
+    const Scene& scene = triangles.scene();
+    std::vector<uint32_t> all(scene.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const std::vector<Outside> outside = outsideOf(scene, all);
+    std::vector<std::vector<Place>> found(all.size());
+    parallelFor(all.size(),
+                [&](size_t triangle)
+                {
+                    Text text(lit);
+                    Random random(kHiddenStream, uint64_t(triangle));
+                    const glm::uvec3 corner = scene.triangles[triangle];
+                    const vec3 a = scene.positions[corner.x], ab = scene.positions[corner.y] - a, ac = scene.positions[corner.z] - a;
+                    const vec3 across = glm::cross(ab, ac);
+                    if (!(glm::length(across) > 0.0f)) return;
+                    const double wanted = areaOf(scene, uint32_t(triangle)) / (spacing * spacing);
+                    const auto count = uint64_t(wanted + double(random.uniform()));
+                    for (uint64_t i = 0; i < count; ++i)
+                    {
+                        vec2 share = random.uniform2();
+                        if (share.x + share.y > 1.0f) share = 1.0f - share;
+                        const vec3 on = (a + share.x * ab + share.y * ac - lit.info.origin) / lit.info.scale;
+                        for (const Outside side : {Outside::front, Outside::back})
+                        {
+                            if (outside[triangle] != Outside::both && outside[triangle] != side) continue;
+                            const vec3 normal = glm::normalize(float(side) * across), point = on + triangles.offset() * normal;
+                            if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal)) found[triangle].push_back({0, point, normal});
+                        }
+                    }
+                });
+    std::vector<Place> places;
+    for (const auto& some : found) places.insert(places.end(), some.begin(), some.end());
+    return places;
+}
+
+/// Sorts places by their keys in voxels of info.hidden.
+/// @return  where each key's begin, and their end
+std::vector<size_t> sortByKey(std::vector<Place>& places, const FieldData& lit, float offset)
+{
+    parallelFor(places.size(),
+                [&](size_t i) { places[i].key = Text(lit).keyOf(places[i].point - offset * places[i].normal, places[i].normal); });
+    std::ranges::stable_sort(places, {}, &Place::key);
+    std::vector<size_t> first;
+    for (size_t i = 0; i < places.size(); ++i)
+        if (i == 0 || places[i].key != places[i - 1].key) first.push_back(i);
+    first.push_back(places.size());
+    return first;
+}
+
+/// Mean light at some places of one key; 0: none arrives at any, or what sees them no probe sees either: the far side of an outer wall.
+uint32_t lightOf(std::span<const Place> places, Text& text, const TriangleGather& triangles, std::span<const uint32_t> sent)
+{
+    vec3 sum(0.0f);
+    uint32_t known = 0;
+    bool meets = false;
+    for (uint32_t i = 0; i < std::min<size_t>(places.size(), kPlacesOfKey); ++i)
+    {
+        const Place& place = places[i * places.size() / std::min<size_t>(places.size(), kPlacesOfKey)];
+        const auto got = triangles.gatherAt(place.point, place.normal, kRaysOfPlace, {place.key, i}, sent);
+        if (!got.known) continue;
+        sum += got.straight + got.bounced;
+        meets = meets || got.meetsSeen;
+        ++known;
+    }
+    return meets && sum != vec3(0.0f) ? text.packKnownLight(sum / float(known)) : 0;
+}
+
+/// The table, of few slots in which every key is found.
+std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const uint32_t> light)
+{
+    for (size_t slots = keys.size() + keys.size() / 4 + 1;; slots += slots / 8 + 1)
+    {
+        std::vector<uint32_t> table(2 * slots);
+        const auto put = [&](size_t i)
+        {
+            for (size_t turn = 0; turn < size_t(gpu::kHiddenTries); ++turn)
+            {
+                uint32_t* const slot = &table[2 * ((Text::hiddenSlot(keys[i], uint32_t(slots)) + turn) % slots)];
+                if (slot[0] != 0) continue;
+                slot[0] = keys[i], slot[1] = light[i];
+                return true;
+            }
+            return false;
+        };
+        size_t done = 0;
+        while (done < keys.size() && put(done)) ++done;
+        if (done == keys.size()) return table;
+    }
+}
+
+} // namespace
+
+void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent)
+{
+    const Scene& scene = triangles.scene();
+    double area = 0.0;
+    for (uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) area += areaOf(scene, triangle);
+    const uint32_t shift = voxelShift(lit, area);
+    lit.info.hidden = shift; // keys are of these voxels; there is no table yet
+    const double side = double(lit.info.voxel) * lit.info.scale * double(1u << shift);
+    std::vector<Place> places = hiddenPlaces(lit, triangles, side / std::sqrt(kPointsOfVoxel));
+    std::vector<size_t> first = sortByKey(places, lit, triangles.offset());
+    while (first.size() > kMostKeysOfProbe * lit.info.probeCount + 1 && lit.info.hidden + 1 < 1u << gpu::kHiddenShiftBits)
+    {
+        ++lit.info.hidden;
+        first = sortByKey(places, lit, triangles.offset());
+    }
+    std::vector<uint32_t> found(first.size() - 1);
+    parallelFor(found.size(),
+                [&](size_t i)
+                {
+                    Text text(lit);
+                    found[i] = lightOf(std::span(places).subspan(first[i], first[i + 1] - first[i]), text, triangles, sent);
+                });
+    std::vector<uint32_t> keys, light;
+    for (size_t i = 0; i < found.size(); ++i)
+        if (found[i] != 0) keys.push_back(places[first[i]].key), light.push_back(found[i]);
+    if (keys.empty())
+    {
+        lit.info.hidden = 0;
+        return;
+    }
+    const std::vector<uint32_t> table = tableOf(keys, light);
+    lit.info.hidden |= uint32_t(table.size() / 2) << gpu::kHiddenShiftBits;
+    lit.surfaceLight.insert(lit.surfaceLight.end(), table.begin(), table.end());
+}
+
+} // namespace sconce

@@ -1,0 +1,126 @@
+// Light of surfaces that no probe sees, against rays to the sky.
+#include "runtime/bake/hidden_surfaces.h"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "runtime/bake/bake.h"
+#include "runtime/field/tracer_cpu.h"
+#include "scene/mesh_builder.h"
+#include "scene/triangle_rays.h"
+#include "tests/support/device.h"
+
+namespace sconce
+{
+namespace
+{
+
+constexpr float kGap = 0.3f; // metres under the slab
+
+class HiddenSurfaces : public testing::Test
+{
+protected:
+    /// Of a black scene under a sky of radiance 1.
+    FieldData bake(const Scene& scene, const std::vector<vec3>& probes)
+    {
+        const auto rays = TriangleRays::build(scene);
+        BakeSettings settings;
+        settings.resolution = 256;
+        settings.bounces = 1;
+        settings.surfaceTexels = 52;
+        settings.surfaceRefined = 0.0f;
+        settings.rays = &*rays;
+        settings.octree.voxels = 32;
+        BakeReport report;
+        auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        if (!field) throw std::runtime_error(field.error().message);
+        return std::move(*field);
+    }
+
+    /// Share of the sky that a place sees, weighted by the cosine.
+    static double skyAt(const TriangleRays& rays, vec3 at, Random& random)
+    {
+        constexpr int kRays = 400;
+        int open = 0;
+        for (int i = 0; i < kRays; ++i)
+        {
+            const vec2 lots = random.uniform2();
+            const float out = std::sqrt(lots.x), turn = 2.0f * std::numbers::pi_v<float> * lots.y;
+            const vec3 direction(out * std::cos(turn), std::sqrt(1.0f - lots.x), out * std::sin(turn));
+            open += !rays.occluded(at + vec3(0.0f, 1e-3f, 0.0f), direction, 1e3f);
+        }
+        return double(open) / kRays;
+    }
+
+    testing_support::ValidatedDevice device;
+};
+
+// A slab over a floor: the floor under it is seen from beside it by whoever looks, and by no probe, which stand above.
+TEST_F(HiddenSurfaces, TheFloorUnderASlabHasItsOwnLight)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t black = mesh.material("black", vec3(0.01f), 1.0f);
+    scene.sky = vec3(1.0f);
+    mesh.box(vec3(-4.0f, -0.5f, -4.0f), vec3(4.0f, 0.0f, 4.0f), black);
+    mesh.box(vec3(-1.0f, kGap, -1.0f), vec3(1.0f, kGap + 1.0f, 1.0f), black);
+    const FieldData field = bake(scene, {vec3(0.0f, 2.5f, 0.0f), vec3(2.5f, 2.5f, 0.3f)});
+    ASSERT_NE(field.info.hidden, 0u);
+    const auto rays = TriangleRays::build(scene);
+    FieldData without = field; // as it was: the table is the last of the words
+    without.surfaceLight.resize(field.surfaceLight.size() - hiddenWords(field.info));
+    without.info.hidden = 0;
+    Random random(9, 0);
+    double off = 0.0, offWithout = 0.0, all = 0.0, sum = 0.0;
+    int hidden = 0;
+    for (int i = 0; i < 400; ++i)
+    {
+        const vec2 at = 1.9f * random.uniform2() - 0.95f;
+        const vec3 place(at.x, 0.0f, at.y), up(0, 1, 0), point = (place - field.info.origin) / field.info.scale;
+        const auto lightIn = [&](const FieldData& lit)
+        {
+            int reads = 0;
+            return twin::LightFieldTwin<float>(lit, {}).surfaceLightAt(point, up, up, point + 0.5f * lit.info.voxel * up, reads);
+        };
+        const auto found = lightIn(field);
+        if (found.probes > 0) continue;
+        hidden += found.probes == -1;
+        const double truth = skyAt(*rays, place, random);
+        off += std::abs(double(found.light.g) - truth);
+        offWithout += std::abs(double(lightIn(without).light.g) - truth);
+        sum += double(found.light.g);
+        all += truth;
+    }
+    EXPECT_GT(hidden, 200);
+    EXPECT_NEAR(sum / all, 1.0, 0.05);
+    EXPECT_LT(off / all, 0.25) << "means of voxels of a quarter of a metre, where light falls by half in that";
+    EXPECT_LT(off, 0.5 * offWithout);
+    RecordProperty("error, with and without; mean",
+                   std::to_string(off / all) + " " + std::to_string(offWithout / all) + " " + std::to_string(sum / all));
+}
+
+// Outside of a closed room nobody stands, and no probe tells.
+TEST_F(HiddenSurfaces, TheOutsideOfARoomIsLeftOut)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t grey = mesh.material("grey", vec3(0.3f), 1.0f);
+    scene.materials[grey].emission = vec3(1.0f);
+    scene.sky = vec3(1.0f);
+    mesh.box(vec3(-1.0f), vec3(1.0f), grey);
+    const FieldData field = bake(scene, {vec3(0.1f, 0.0f, 0.1f)});
+    Random random(3, 0);
+    int known = 0;
+    for (int i = 0; i < 300 && field.info.hidden != 0; ++i)
+    {
+        const vec2 at = 2.0f * random.uniform2() - 1.0f;
+        const vec3 place = (vec3(1.0f, at.x, at.y) - field.info.origin) / field.info.scale;
+        known += twin::LightFieldTwin<float>(field, {}).hiddenLightAt(place, vec3(1, 0, 0)).w > 0.0f;
+    }
+    EXPECT_EQ(known, 0);
+}
+
+} // namespace
+} // namespace sconce
