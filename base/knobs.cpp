@@ -94,6 +94,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(converged),
                                               rowOf(surfaceTexels),
                                               rowOf(surfaceRays),
+                                              rowOf(surfaceRefined),
                                               rowOf(gather),
                                               rowOf(chart),
                                               rowOf(deviceMebibytes),

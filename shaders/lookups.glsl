@@ -6,6 +6,7 @@ struct LookUp
 {
     ivec2 at;   // its pixel, the first where it is for four
     int pixels; // 1 or 4
+    float across; // of four, from the first to the last, metres; readLookUp() sets it
 };
 
 uint lookUpWord(uint list, uint index)
@@ -28,11 +29,13 @@ bool findLookUp(out LookUp found)
 ivec2 pixelOf(LookUp l, int i) { return l.at + ivec2(i & 1, i >> 1); }
 
 /// Its pixel, or what is in the middle of four: their place, normal and roughness; the rest as the first has it.
-Pixel readLookUp(LookUp l)
+Pixel readLookUp(inout LookUp l)
 {
     Pixel p = readPixel(l.at);
+    l.across = 0.0;
     if (l.pixels == 1) return p;
     Pixel q = readPixel(l.at + 1); // across: halfway between is the middle
+    l.across = distance(p.position, q.position);
     p.position = 0.5 * (p.position + q.position);
     p.normal = normalize(p.normal + q.normal);
     p.brdf.roughness = 0.5 * (p.brdf.roughness + q.brdf.roughness);

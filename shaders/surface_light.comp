@@ -7,13 +7,15 @@
 #include "lookups.glsl"
 
 // Diffuse light of all sources but the host's own, read from the surface light of the probes that see the pixel. No sample, no filter. Rough
-// reflections are scaled by it, so their pixels have it, too. What no probe shows, and pixels in refined texels, are left to a second dispatch: where
+// reflections are scaled by it, so their pixels have it, too. What no probe shows, and pixels as large as texels, are left to a second dispatch: where
 // lanes are vectors, few that search would have all wait.
 // Dispatch: see lookups.glsl.
 layout(local_size_x = 64) in;
 layout(constant_id = kLookUpRestId) const uint kRest = 0u; // the list that look-ups are left to
 layout(constant_id = kIsRestId) const bool kIsRest = false; // this is the second dispatch
 layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
+
+const float kMostOfTexel = 0.5; // of its width, that four pixels of one look-up span
 
 /// Leaves a look-up, or each of its pixels alone.
 void leave(LookUp l, bool alone)
@@ -59,8 +61,8 @@ void main()
     {
         SurfaceSeen seen = surfaceLightSeen(point, p.normal, point + 0.5 * field.voxel * p.normal, reads);
         found = seen.light;
-        // In refined texels light changes from pixel to pixel.
-        bool alone = found.probes > 0 && seen.finer && lookUp.pixels > 1;
+        // Where texels are as fine as pixels, light changes from one to the next; where none shows the middle, one may show a pixel.
+        bool alone = lookUp.across > kMostOfTexel * field.scale * (found.probes > 0 ? seen.width : field.voxel);
         if (found.probes == 0 || alone)
         {
             leave(lookUp, alone);

@@ -155,7 +155,7 @@ struct SurfaceTaps
     vec3 light;  // sum of the taps' light
     vec3 growth; // sum of growthOf() them, by their luminance
     real weight; // sum, bilinear, of those that lie on the surface
-    bool finer;  // they are of a refined texel
+    real width;  // least of theirs, field units
 };
 
 /// The four taps about a point, of the finer texels where its own is refined. Cost: 8 reads, 12 with directions, up to 5 more with refined ones.
@@ -169,7 +169,7 @@ SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
     sum.light = vec3(real(0.0));
     sum.growth = vec3(real(0.0));
     sum.weight = real(0.0);
-    sum.finer = false;
+    sum.width = real(1e30);
     if (!(uvw.z > real(1e-6))) return sum;
     int fineLog = 0; // log2 of the texels a side to one
     vec2 uv = vec2(uvw.x / uvw.z + real(1.0), uvw.y / uvw.z + real(1.0)) * (real(0.5) * real(field.surfaceSize));
@@ -178,7 +178,6 @@ SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
         int most = int(field.surfaceSize) - 1;
         if (isRefined(surfaceWord(surfaceIndex(probe, face, clamp(int(floor(uv.x)), 0, most), clamp(int(floor(uv.y)), 0, most))))) fineLog = kFineLog;
     }
-    sum.finer = fineLog > 0;
     int last = (int(field.surfaceSize) << fineLog) - 1;
     real px = uv.x * real(1 << fineLog) - real(0.5);
     real py = uv.y * real(1 << fineLog) - real(0.5);
@@ -200,6 +199,7 @@ SCONCE_FN SurfaceTaps surfaceTaps(uint probe, vec3 point, vec3 facing)
         vec3 light = weight * unpackSharedExponent(word);
         sum.light += light;
         sum.weight += weight;
+        sum.width = min(sum.width, texel.width);
         if (field.surfaceDirections != 0u) sum.growth += luminance(light) * growthOf(texel.normal, tiltOf(index));
     }
     return sum;
@@ -264,7 +264,7 @@ struct SurfaceSeen
     SurfaceLight light; // probes: 0 where no texel shows it
     uvec4 ranked;       // the leaf's probes
     uvec2 seeing;       // that see the point without a texel of its surface; kNoProbe
-    bool finer;         // of a refined texel
+    real width;         // least of the texels that light it, field units
 };
 
 /// Light at a surface point from the two of its leaf's probes that see most of it, of their texels those of the same surface. Cost: about 25 reads,
@@ -279,7 +279,7 @@ SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCO
     result.light.growth = vec3(real(0.0));
     result.light.probes = 0;
     result.seeing = uvec2(kNoProbe);
-    result.finer = false;
+    result.width = real(1e30);
     result.ranked = uvec4(0u);
     if (!canGather(point, facing)) return result;
     uvec4 ranked = rankedProbesAt(lookUp, reads);
@@ -307,7 +307,7 @@ SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCO
             result.light.growth += most * taps.growth;
             weight += most * taps.weight;
             ++result.light.probes;
-            result.finer = result.finer || taps.finer;
+            result.width = min(result.width, taps.width);
         }
         else if (result.seeing.x == kNoProbe) result.seeing.x = probe;
         else if (result.seeing.y == kNoProbe) result.seeing.y = probe;
