@@ -31,6 +31,7 @@ protected:
         settings.resolution = 128;
         settings.bounces = bounces;
         settings.surfaceTexels = surfaceTexels;
+        settings.surfaceRefined = 0.0f;
         std::optional<TriangleRays> rays;
         if (gather == knobs::kGathers[0]) settings.rays = &rays.emplace(std::move(*TriangleRays::build(scene)));
         settings.octree.voxels = 16;
@@ -45,7 +46,7 @@ protected:
     };
     static std::span<const uint32_t> texelsOf(const FieldData& field)
     {
-        return std::span(field.surfaceLight).first(field.surfaceLight.size() - cellWords(field.info));
+        return std::span(field.surfaceLight).first(surfaceTexelWords(field.info));
     }
     /// Green of all cells that know their light, on a facing.
     static std::vector<double> cellsOf(const FieldData& field, size_t facing)
@@ -216,7 +217,7 @@ TEST_F(SurfaceBake, NormalsThatLeanFromAWallGetMoreOfTheSky)
     scene.materials[black].normalTexture.image = 0;
     const FieldData field = bake(scene, probes, 0, 52);
     ASSERT_EQ(field.info.surfaceDirections, 1u);
-    EXPECT_EQ(field.surfaceLight.size() - without.surfaceLight.size(), size_t(6) * 52 * 52); // two texels a word, two probes
+    EXPECT_EQ(surfaceTexelWords(field.info) - surfaceTexelWords(without.info), size_t(6) * 52 * 52); // two texels a word, two probes
     const double t = std::numbers::pi / 6, s = std::sin(t), c = std::cos(t), half = lightOf(field, {0, 1, 0});
     EXPECT_NEAR(half, 0.5, 0.02);
     EXPECT_NEAR(lightOf(field, {-s, c, 0}), (c + s) / 2, 0.07 * (c + s) / 2);
