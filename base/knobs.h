@@ -298,6 +298,19 @@ inline constexpr Knob<float> surfaceRefined{
     .what = "Share of the surface light's texels, where light changes most within one, that are refined into 4 x 4, by rays to triangles",
     .buys = "contact shadows, their edges and light next to lamps; bake time, and 68 bytes a refined texel",
     .readme = true};
+inline constexpr uint32_t kLampTexels[] = {0, 512, 1024, 2048, 4096, 8192};
+inline constexpr Knob<uint32_t> lampTexels{
+    .name = "lampTexels",
+    .option = "bake --lamp-texels",
+    .member = "BakeSettings::lampTexels",
+    .value = 2048,
+    .least = 0,
+    .most = 8192,
+    .only = kLampTexels,
+    .unit = "texels",
+    .what = "Side of the shadow map of an emitter whose shadows are sharper than surface light's texels, and which is kept as a lamp; 0: none is",
+    .buys = "sharp shadows and reflections of small far emitters, without noise; 2 bytes a texel, and a pass over the picture",
+    .readme = true};
 inline constexpr std::string_view kGathers[] = {"triangles", "field"};
 inline constexpr Knob<std::string_view> gather{
     .name = "gather",

@@ -128,7 +128,7 @@ public:
     /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
     /// any later stage read these.
     /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace",
-    ///               "diffuse fill", "glossy fill", "glossy denoise"
+    ///               "diffuse fill", "glossy fill", "glossy denoise", "lamp light"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; shaders/compose.comp shows

@@ -28,7 +28,10 @@ void main()
     vec3 albedo = vec3(float(material & 31u) / 31.0, float((material >> 5) & 63u) / 63.0, float((material >> 11) & 31u) / 31.0);
     vec3 normal = unpackNormal8(material >> 16);
     vec3 p = push.centre + relative;
-    vec3 gathered = bounceIrradiance(p, normal, push.centre);
+    vec3 gathered = bounceIrradiance(p, normal, push.centre), straight = unpackRadiance(own);
+#ifdef SURFACE_LIGHT
+    if (isOfLamp(p, length(relative), length(relative) * 2.0 / float(push.size))) straight = vec3(0.0);
+#endif
     // Rounded to nearest, the last bounces would all be rounded away, in every texel alike.
-    push.radiance.word[index] = packRadianceDithered(unpackRadiance(own) + albedo * gathered, ditherOf(index));
+    push.radiance.word[index] = packRadianceDithered(straight + albedo * gathered, ditherOf(index));
 }

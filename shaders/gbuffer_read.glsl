@@ -50,12 +50,22 @@ vec3 worldAt(ivec2 at, float depth)
     return world.xyz / world.w;
 }
 
-/// From a pixel to the one before or after it, the one whose depth goes on as that of the next but one: reversed depth is linear along a plane.
+const float kOffLine = 0.2;       // of a step of depth, up to which depths lie on a line
+const float kDepthRounding = 1e-6; // of a depth
+
+/// From a pixel to the one before or after it, the one whose depth goes on as that of the next but one: reversed depth is linear along a plane. 0 where
+/// neither does.
 vec3 alongSurface(ivec2 at, ivec2 step_, Pixel p)
 {
     float before = depthAt(at - step_), after = depthAt(at + step_);
     float offBefore = abs(2.0 * before - depthAt(at - 2 * step_) - p.clip.z), offAfter = abs(2.0 * after - depthAt(at + 2 * step_) - p.clip.z);
-    return offBefore < offAfter ? p.position - worldAt(at - step_, before) : worldAt(at + step_, after) - p.position;
+    // Outside of the picture there is no pixel.
+    if (any(lessThan(at, 2 * step_))) offBefore = 1e30;
+    if (any(greaterThanEqual(at + 2 * step_, ivec2(frame.size)))) offAfter = 1e30;
+    bool isBefore = offBefore < offAfter;
+    float change = abs((isBefore ? before : after) - p.clip.z);
+    if (min(offBefore, offAfter) > kOffLine * change + kDepthRounding * p.clip.z) return vec3(0.0);
+    return isBefore ? p.position - worldAt(at - step_, before) : worldAt(at + step_, after) - p.position;
 }
 
 /// Normal of the surface itself, from depth, on the viewer's side: where the shading normal is bent far off it. 0 where depth doesn't tell. Cost: 8 reads.

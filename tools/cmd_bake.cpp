@@ -122,6 +122,7 @@ void addBakeCommand(CLI::App& app, Context& context)
     addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
     addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
     addKnob(bake, "--surface-refined", settings.surfaceRefined, knobs::surfaceRefined, "SHARE");
+    addKnob(bake, "--lamp-texels", settings.lampTexels, knobs::lampTexels, "TEXELS");
     addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
     addKnob(bake, "--gather", options->gather, knobs::gather);
     addChoice(bake, "--chart", settings.chart, knobs::chart);

@@ -31,7 +31,8 @@ Json bytesJson(const FieldBytes& bytes)
             {"index", bytes.index},
             {"prefiltered_radiance", bytes.prefiltered},
             {"surface_light", bytes.surface},
-            {"surface_light_cells", bytes.cells}};
+            {"surface_light_cells", bytes.cells},
+            {"lamps", bytes.lamps}};
 }
 
 std::string megabytes(size_t bytes)
@@ -54,6 +55,7 @@ Json fieldJson(const FieldData& field)
     json["face_size"] = info.faceSize;
     json["surface_size"] = info.surfaceSize;
     json["surface_directions"] = info.surfaceDirections != 0;
+    json["lamps"] = field.lamps.size();
     json["bounces"] = field.bounces;
     json["effects"] = field.effects;
     json["bytes"] = bytesJson(bytesByPart(field));
@@ -87,6 +89,9 @@ void printField(const FieldData& field, const std::string& file)
                                  info.surfaceSize, info.surfaceDirections != 0 ? " with directions" : "", megabytes(bytes.surface),
                                  megabytes(bytes.cells), float(1 << info.cellShift) * info.voxel * info.scale, megabytes(bytes.refined),
                                  info.refinedTexels, megabytes(bytes.hidden));
+    if (!field.lamps.empty())
+        std::cout << fmt::format("lamps: {}, with shadow maps of {} texels a side, {}\n", field.lamps.size(), field.lamps[0].size,
+                                 megabytes(bytes.lamps));
     std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;

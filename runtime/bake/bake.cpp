@@ -11,6 +11,7 @@
 #include "base/numbers.h"
 #include "base/parallel.h"
 #include "runtime/bake/host_memory.h"
+#include "runtime/bake/lamps.h"
 #include "runtime/bake/patches.h"
 #include "runtime/bake/prefilter.h"
 #include "runtime/bake/probe_baker.h"
@@ -56,7 +57,7 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     const std::string fault =
         firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
                     faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays),
-                    faultOf(knobs::surfaceRefined, settings.surfaceRefined)});
+                    faultOf(knobs::surfaceRefined, settings.surfaceRefined), faultOf(knobs::lampTexels, settings.lampTexels)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -241,6 +242,8 @@ Result<LightField> Bake::asItIs(Gpu& gpu)
     lit.octree = field.octree;
     lit.irradiance = field.irradiance;
     lit.surfaceLight = field.surfaceLight;
+    lit.lamps = field.lamps;
+    lit.lampMaps = field.lampMaps;
     lit.distance = std::move(field.distance); // tells which probes a wall hides; lent, since it is half of the field
     auto device = makeLightField(gpu, lit);
     field.distance = std::move(lit.distance);
@@ -384,9 +387,14 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
     {
+        Lamps lamps; // which needs no device
+        if (info.surfaceSize > 0 && settings.rays && settings.lampTexels > 0)
+            lamps = findLamps(*settings.rays, info, bake.field.probes, settings.lampTexels);
+        bake.field.lamps = std::move(lamps.lamps);
+        bake.field.lampMaps = std::move(lamps.maps);
         DeviceSceneDesc sceneDesc = settings.scene;
         if (info.surfaceSize > 0) // emitters are shadowed by rays, and rays find the sky
-            sceneDesc.light = {.emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false};
+            sceneDesc.light = {.emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
         auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
         auto baker = ProbeBaker::create(**gpu, *deviceScene, info);
@@ -395,7 +403,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         spent.sceneSeconds = watch.lap();
 
         // Not before the scene is on the device: only its list of lights tells whether maps of emission are needed, which count.
-        const bool emitters = deviceScene->lights().header.emitterCount > 0;
+        const bool emitters = deviceScene->lights().shines;
         const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
         if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
         const size_t texels = probes.size() * radianceWordsPerProbe(info.chart, info.faceSize);

@@ -26,6 +26,7 @@ struct BakeSettings
     float converged = knobs::converged.value;        // stop earlier, after a bounce that adds less than this share of all light; 0: never
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // texels a side of a cube face of the surface light; 0: none
     float surfaceRefined = knobs::surfaceRefined.value;  // share of them that is refined at most, where `rays` gather
+    uint32_t lampTexels = knobs::lampTexels.value;       // a side of a lamp's shadow map; 0, or without `rays`: emitters are no lamps
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
     const ExactRays* rays = nullptr;  // to the triangles of the scene that is baked, that gather it; null: through the field
     DeviceSceneDesc scene;            // textures and lights

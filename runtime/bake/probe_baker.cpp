@@ -47,7 +47,7 @@ Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceSce
 {
     std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info));
     baker->octahedral = info.chart == gpu::kChartOctahedral;
-    baker->emitters = scene.lights().header.emitterCount > 0;
+    baker->emitters = scene.lights().shines;
     baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
     if (auto status = baker->createBuffers(); !status) return status.error();
     if (auto status = baker->createPipelines(); !status) return status.error();

@@ -38,6 +38,7 @@ struct Gatherer : LightFieldTwin<float>
 #include "shaders/shared/brdf_text.h"
 
 #include "shaders/shared/gathered_rays.h"
+#include "shaders/shared/polygon_light.h"
 
     const ExactRays& triangles;
     const gpu::LightsHeader& lightsHeader;
@@ -122,7 +123,7 @@ struct Gatherer : LightFieldTwin<float>
             // No probe sees the place: there the ray is scattered itself.
             const vec3 scattered = scatteredBy(place.surface);
             const float goesOn = luminance(scattered);
-            brought += tint * scattered * (emittersByDiffuse(place, random) + deltaLightAt(place) / kBrdfPi);
+            brought += tint * scattered * (emittersByDiffuse(place, random) + (deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) / kBrdfPi);
             if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
             tint *= scattered / goesOn;
             const vec3 up = sampleCosine(random.uniform2());
@@ -271,6 +272,34 @@ struct Gatherer : LightFieldTwin<float>
         return sum;
     }
 
+    /// Irradiance from the field's lamps: what their outlines give, by as much of them as rays reach.
+    /// @param position  world
+    /// @param normal    unit, for shading; `plane`: the surface's own
+    vec3 lampLightAt(vec3 position, vec3 normal, vec3 plane) const
+    {
+        const vec3 point = (position - field.origin) / field.scale + 2.0f * gap / field.scale * plane;
+        const TangentFrame tangents = tangentFrame(normal);
+        vec3 sum(0.0f);
+        for (const gpu::Lamp& lamp : source.lamps)
+        {
+            const auto corner = [&](int i) { return toTangent(tangents, lamp.corner[i] - point); };
+            if (!(dot(point - lamp.centre, lamp.normal) > 0.0f)) continue;
+            const float given = polygonIrradiance(corner(0), corner(1), corner(2), corner(3));
+            if (!(given > 0.0f)) continue;
+            int reached = 0;
+            for (int i = 0; i < kLampRays * kLampRays; ++i)
+            {
+                const vec2 at = (vec2(i % kLampRays, i / kLampRays) + 0.5f) / float(kLampRays);
+                const vec3 to = mix(mix(lamp.corner[0], lamp.corner[1], at.x), mix(lamp.corner[3], lamp.corner[2], at.x), at.y) - point;
+                const float far = length(to);
+                reached += dot(to, plane) > 0.0f && emitterReaches(point, to / far, far, plane) ? 1 : 0;
+            }
+            sum += lamp.radiance * (given * float(reached) / float(kLampRays * kLampRays));
+        }
+        return sum;
+    }
+    static constexpr int kLampRays = 2; // along each side of a lamp
+
     /// What a surface scatters of the light of the rays that don't go on by its specular lobe, which are as many fewer.
     vec3 scatteredBy(const BrdfSurface& surface) const
     {
@@ -288,6 +317,15 @@ struct Gatherer : LightFieldTwin<float>
         for (uint i = 1; i < palette.size(); ++i)
             if (distance(palette[i], tint) < distance(palette[nearest], tint)) nearest = i;
         return nearest;
+    }
+
+    /// A texel with what it sends of the light of lamps.
+    gpu::SurfaceTexel withLamps(gpu::SurfaceTexel known, vec3 position, vec3 plane) const
+    {
+        if (!source.lamps.empty())
+            known.sent = packSharedExponent(unpackSharedExponent(known.sent) +
+                                            unpackRootOfColor(known.albedo) * lampLightAt(position, unpackNormal8(known.normal), plane) / kBrdfPi);
+        return known;
     }
 
     /// What a texel sends, see TriangleGather::Target: to the rays that end there, which are as many fewer as go on.
@@ -461,7 +499,8 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                         point += 2.0f * gap / field->info.scale * plane;
                         const vec3 normal = field->info.surfaceDirections != 0 ? surface.normal : text.unpackNormal8(own[text.slot].normal);
                         const auto got = text.gatherAt(point, normal, plane, text.pixelOfTexel(glm::uvec3(x, y, face)));
-                        target.sending[text.slot] = exact ? text.sending(own[text.slot], *exact) : own[text.slot];
+                        const gpu::SurfaceTexel lit = text.withLamps(own[text.slot], text.worldOf(point), plane);
+                        target.sending[text.slot] = exact ? text.sending(lit, *exact) : lit;
                         target.light[text.slot].w = got.variance;
                         target.reflected[text.slot] = text.packSharedExponent(text.brought / std::max(got.ends.all, 1.0f));
                         target.first[text.slot] = vec4(got.light, text.knowsTooLittle(got.ends, got.asked) ? gpu::kNotKnown : got.reach);

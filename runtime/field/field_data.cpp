@@ -8,11 +8,6 @@
 namespace sconce
 {
 
-namespace
-{
-
-} // namespace
-
 FieldBytes bytesByPart(const FieldData& field)
 {
     FieldBytes bytes;
@@ -29,7 +24,8 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.refined = field.surfaceLight.empty() ? 0 : size_t(gpu::kFineWords) * field.info.refinedTexels * sizeof(uint32_t);
     bytes.hidden = field.surfaceLight.empty() ? 0 : hiddenWords(field.info) * sizeof(uint32_t);
     bytes.cells = field.surfaceLight.empty() ? 0 : cellWords(field.info) * sizeof(uint32_t);
-    bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface;
+    bytes.lamps = field.lamps.size() * sizeof(gpu::Lamp) + field.lampMaps.size() * sizeof(uint32_t);
+    bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface + bytes.lamps;
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
 }
@@ -92,6 +88,12 @@ size_t surfaceTexelWords(const gpu::LightFieldInfo& info)
 {
     const size_t texels = size_t(6) * info.surfaceSize * info.surfaceSize * info.probeCount;
     return texels + (info.surfaceDirections != 0 ? (texels + 1) / 2 : 0);
+}
+
+size_t lampMapWords(uint32_t size)
+{
+    const size_t blocks = size / gpu::kLampBlock, larger = blocks / gpu::kLampBlock;
+    return size_t(size) * size / 2 + blocks * blocks + larger * larger;
 }
 
 size_t hiddenWords(const gpu::LightFieldInfo& info)

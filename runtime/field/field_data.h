@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "base/knobs.h"
+#include "shaders/shared/lamps.h"
 #include "shaders/shared/light_field.h"
 #include "svo/octree.h"
 
@@ -31,6 +32,8 @@ struct FieldData
                                    // emission and sky, of what is seen through a window of kPatchSide^2 a face: see patchIrradiance()
     std::vector<uint32_t> surfaceLight; // [probe][face][y][x], info.surfaceSize texels a side, RGB9E5: shaders/shared/surface_light.h; then
                                         // [cell][kCellWords]: light_cells.h; empty: baked without
+    std::vector<gpu::Lamp> lamps;       // at most gpu::kMostLamps; only with surface light
+    std::vector<uint32_t> lampMaps;     // theirs, one after another; firstWord counts the lamps' own words, too
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -44,6 +47,7 @@ struct FieldBytes
 {
     size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches and surface light
     size_t prefiltered = 0;                                                    // of the radiance
+    size_t lamps = 0;                                          // with their maps: of the irradiance
     size_t surface = 0, cells = 0, refined = 0, hidden = 0; // surface light with all that follows its texels, and that: of the irradiance
     size_t total() const { return distance + normals + radiance + irradiance + index; }
 };
@@ -77,6 +81,8 @@ int cellShiftOf(const gpu::LightFieldInfo& info);
 size_t surfaceTexelWords(const gpu::LightFieldInfo& info);
 /// Those of the light of hidden surfaces, after the cells and the refined texels (shaders/shared/hidden_light.h).
 size_t hiddenWords(const gpu::LightFieldInfo& info);
+/// Words of the map of a lamp that is so many texels a side, all levels.
+size_t lampMapWords(uint32_t size);
 /// Those that the cells take after them; 0 without surface light.
 size_t cellWords(const gpu::LightFieldInfo& info);
 

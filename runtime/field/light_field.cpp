@@ -106,6 +106,17 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
         part.buffer = std::move(*buffer);
         made.bytes += part.buffer.size();
     }
+    if (!field.lamps.empty())
+    {
+        std::vector<uint32_t> words(field.lamps.size() * sizeof(gpu::Lamp) / sizeof(uint32_t));
+        std::memcpy(words.data(), field.lamps.data(), field.lamps.size() * sizeof(gpu::Lamp));
+        words.insert(words.end(), field.lampMaps.begin(), field.lampMaps.end());
+        auto buffer = gpu.makeBufferWith<uint32_t>(words, 0, "lamps");
+        if (!buffer) return buffer.error();
+        made.lamps = std::move(*buffer);
+        made.lampCount = uint32_t(field.lamps.size());
+        made.bytes += made.lamps.size();
+    }
     made.radianceHeld = !field.radiance.empty();
     auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, VK_FORMAT_R32G32B32A32_SFLOAT, "probe headers");
     if (!probes) return probes.error();
@@ -156,7 +167,8 @@ Status LightField::State::setQuality(const Quality& quality)
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
     const gpu::FieldBlock values{
-        info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(), surface.address()};
+        info, quality.trace, distance.address(), radiance.address(), irradiance.address(), prefiltered.address(), surface.address(),
+        lamps.address(), lampCount};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
 

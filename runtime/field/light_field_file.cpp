@@ -88,10 +88,12 @@ enum Section : uint32_t
     prefiltered, // since version 3
     patches,     // since version 4
     surface,     // since version 5
+    lamps,       // these two since version 6
+    lampMaps,
     sectionCount
 };
 constexpr const char* kSectionNames[sectionCount] = {"meta",   "info",          "probes",      "distance", "radiance",     "irradiance",
-                                                     "octree", "octree texels", "prefiltered", "patches",  "surface light"};
+                                                     "octree", "octree texels", "prefiltered", "patches",  "surface light", "lamps", "lamp maps"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader
@@ -176,6 +178,8 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         product({n, gpu::kPrefilteredWords, 4}),
         product({n, gpu::kPatches, 8}),
         texels && cells ? product({*texels + *cells + uint64_t(gpu::kFineWords) * i.refinedTexels + hiddenWords(i), 4}) : std::nullopt,
+        rawBytes[lamps], // lampProblem() looks at these two
+        rawBytes[lampMaps],
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
@@ -242,6 +246,28 @@ std::string octreeProblem(const FieldData& field)
     return {};
 }
 
+/// What is wrong with the lamps; empty when each has its map.
+std::string lampProblem(const FieldData& field)
+{
+    if (field.lamps.size() > gpu::kMostLamps) return fmt::format("it has {} lamps, above {}", field.lamps.size(), gpu::kMostLamps);
+    if (!field.lamps.empty() && field.surfaceLight.empty()) return "it has lamps and no surface light";
+    size_t next = field.lamps.size() * sizeof(gpu::Lamp) / sizeof(uint32_t);
+    for (size_t i = 0; i < field.lamps.size(); ++i)
+    {
+        const gpu::Lamp& lamp = field.lamps[i];
+        if (lamp.size == 0 || lamp.size > knobs::lampTexels.most || lamp.size % (gpu::kLampBlock * gpu::kLampBlock) != 0)
+            return fmt::format("the map of lamp {} has an impossible size", i);
+        float numbers[offsetof(gpu::Lamp, size) / sizeof(float)];
+        std::memcpy(numbers, &lamp, sizeof(numbers));
+        if (!std::ranges::all_of(numbers, [](float x) { return std::isfinite(x); }))
+            return fmt::format("lamp {} holds a number that is not finite", i);
+        if (lamp.firstWord != next) return fmt::format("the map of lamp {} is not where it belongs", i);
+        next += lampMapWords(lamp.size);
+    }
+    const size_t words = field.lamps.size() * sizeof(gpu::Lamp) / sizeof(uint32_t) + field.lampMaps.size();
+    return next == words ? "" : "its lamps' maps have another size than its lamps say";
+}
+
 /// What is wrong with the values that addressing relies on; empty when all is well.
 std::string contentProblem(const FieldData& field)
 {
@@ -253,6 +279,7 @@ std::string contentProblem(const FieldData& field)
         if (!finite(field.probes[p].centre)) return fmt::format("the centre of probe {} is not finite", p);
     if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
         return "its scene bounds are not finite";
+    if (std::string problem = lampProblem(field); !problem.empty()) return problem;
     const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
     const size_t texels = size_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount;
     for (size_t texel = 0; texel < std::min(texels, field.surfaceLight.size()); ++texel)
@@ -512,6 +539,8 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
         std::as_bytes(std::span(field.prefiltered)),
         std::as_bytes(std::span(field.patches)),
         std::as_bytes(std::span(field.surfaceLight)),
+        std::as_bytes(std::span(field.lamps)),
+        std::as_bytes(std::span(field.lampMaps)),
     };
     uint64_t rawBytes[sectionCount], blockCount = 0;
     for (uint32_t section = 0; section < sectionCount; ++section)
@@ -585,6 +614,8 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     field.prefiltered.resize(rawBytes[prefiltered] / sizeof(uint32_t));
     field.patches.resize(rawBytes[patches] / sizeof(uint32_t));
     field.surfaceLight.resize(rawBytes[surface] / sizeof(uint32_t));
+    field.lamps.resize(rawBytes[lamps] / sizeof(gpu::Lamp));
+    field.lampMaps.resize(rawBytes[lampMaps] / sizeof(uint32_t));
     const std::pair<Section, std::span<std::byte>> parts[] = {
         {meta, std::as_writable_bytes(std::span(text))},
         {probes, std::as_writable_bytes(std::span(field.probes))},
@@ -595,6 +626,8 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {prefiltered, std::as_writable_bytes(std::span(field.prefiltered))},
         {patches, std::as_writable_bytes(std::span(field.patches))},
         {surface, std::as_writable_bytes(std::span(field.surfaceLight))},
+        {lamps, std::as_writable_bytes(std::span(field.lamps))},
+        {lampMaps, std::as_writable_bytes(std::span(field.lampMaps))},
     };
     for (const auto& [section, raw] : parts)
         if (Status status = readInto(section, raw); !status) return status.error();

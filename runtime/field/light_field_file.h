@@ -13,7 +13,7 @@ namespace sconce
 
 /// The .sconce format's version that is written, and the oldest that is read; others are refused with a sentence. Version 3 added the
 /// section `prefiltered` and lets `radiance` be empty; version 4 added `patches`.
-inline constexpr uint32_t kFieldFileVersion = 5, kOldestFieldFileVersion = 2;
+inline constexpr uint32_t kFieldFileVersion = 6, kOldestFieldFileVersion = 2;
 
 /// Writes a light field: whole under its name or not at all; the same field gives the same bytes.
 /// Errors: badArgument (arrays disagree with info), fileError (names file and reason).

@@ -6,6 +6,7 @@
 
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/gather_light_comp.h"
+#include "spirv/lamp_light_comp.h"
 #include "spirv/reconstruct_comp.h"
 #include "spirv/surface_light_comp.h"
 #include "spirv/trace_glossy_comp.h"
@@ -129,6 +130,27 @@ Status IndirectLight::State::makeGather()
                      {gpu::kBySurfaceId, readsSurfaces() ? 1u : 0u}});
 }
 
+/// Over the whole picture: lamps are of scenes that they light as a sun does.
+Status IndirectLight::State::makeLamps()
+{
+    const std::pair<uint32_t, const GpuImage*> images[] = {{gpu::kTermDiffuse, readsSurfaces() || tracesDiffuse() ? &diffuseImage : nullptr},
+                                                           {gpu::kTermRough, &roughImage},
+                                                           {gpu::kTermGlossy, &glossyImage},
+                                                           {gpu::kTermMirror, &mirrorImage}};
+    uint32_t terms = 0;
+    const GpuImage* any = nullptr;
+    for (const auto& [term, image] : images)
+        if (image && *image) terms |= 1u << term, any = image;
+    if (terms == 0) return success();
+    const auto of = [&](uint32_t term) { return terms & (1u << term) ? images[term].second : any; };
+    return makePass(lampPass, lampSet, lamp_light_comp,
+                    {{gpu::kLampDiffuseBinding, of(gpu::kTermDiffuse)},
+                     {gpu::kLampRoughBinding, of(gpu::kTermRough)},
+                     {gpu::kLampGlossyBinding, of(gpu::kTermGlossy)},
+                     {gpu::kLampMirrorBinding, of(gpu::kTermMirror)}},
+                    {{gpu::kLampTermsId, terms}});
+}
+
 IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes)
     : gpu(device.shared_from_this()), field(asked), desc(wanted), shaders(passes)
 {
@@ -181,6 +203,8 @@ Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const
 {
     auto state = std::make_unique<IndirectLight::State>(gpu, field, desc, passes);
     if (Status status = state->make(); !status) return status.error();
+    if (field.state().lampCount > 0)
+        if (Status status = state->makeLamps(); !status) return status.error();
     return IndirectLight(std::move(state));
 }
 
@@ -191,6 +215,7 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
                                     {&diffusePass, &diffuseSet},
                                     {&surfacePass, &surfaceSet},
                                     {&gatherPass, &gatherSet},
+                                    {&lampPass, &lampSet},
                                     {&glossyFill, &glossyFillSet},
                                     {&diffuseFill, &diffuseFillSet}})
         if (*pass) writeInputs(*set, inputs);
@@ -281,6 +306,14 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     // After the fill: where the trace is sparse, most pixels have no light before it that a filter could take.
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
+    if (lampPass)
+    {
+        // Read after write: the light of lamps is added to what the passes and filters before have stored.
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        pass(lampPass, lampSet, "lamp light", [&] { gpu->vk.CmdDispatch(cmd, (desc.width + 7) / 8, (desc.height + 7) / 8, 1); });
+        scan("lamp light", {&diffuseImage, &roughImage, &glossyImage, &mirrorImage});
+    }
     // Who reads the outputs is the host's choice, so all commands; nothing later in the frame may write them without a barrier of its own.
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT);

@@ -29,12 +29,13 @@ struct IndirectLight::State
     Buffer frame;
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
-    DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, glossyFillSet, diffuseFillSet;
-    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, glossyFill, diffuseFill;
+    DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, lampSet, glossyFillSet, diffuseFillSet;
+    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, lampPass, glossyFill, diffuseFill;
     Denoiser denoiser;
 
     State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes);
     Status make();
+    Status makeLamps(); // after it, where the field has some
     void setInputs(const FrameInputs& inputs);
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
     uint64_t deviceBytes() const;

@@ -24,7 +24,7 @@ float radicalInverse(uint32_t i, uint32_t base)
     return inverse;
 }
 
-void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t count, LightList& list)
+void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t count, std::span<const uint32_t> lamps, LightList& list)
 {
     struct Emitter
     {
@@ -39,6 +39,8 @@ void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t 
     {
         const vec3 emission = meanEmission(scene, t);
         if (emission == vec3(0.0f)) continue;
+        list.shines = true;
+        if (std::ranges::binary_search(lamps, t)) continue;
         const uvec3 corner = scene.triangles[t];
         const glm::dvec3 a(scene.positions[corner.x]), b(scene.positions[corner.y]), c(scene.positions[corner.z]);
         const double own = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
@@ -178,7 +180,7 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
     LightList list;
     list.header.pointNear = 1e-4f * space.diagonal;
     addDelta(scene, space, list);
-    addEmitters(scene, space, settings.emitterSamples, list);
+    addEmitters(scene, space, settings.emitterSamples, settings.lamps, list);
     addSky(scene, settings.skySamples, list);
     if (settings.areaShadows) addAreaShadows(list);
     list.settings = settings;

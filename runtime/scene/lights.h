@@ -22,6 +22,7 @@ struct LightSettings
     uint32_t pointShadow = knobs::pointShadow.value; // texels a side of a point light's six faces
     uint32_t emitterShadow = knobs::emitterShadow.value; // the same for emitter samples
     uint32_t skyShadow = knobs::skyShadow.value;         // texels a side of a sky direction's map
+    std::vector<uint32_t> lamps = {};                    // triangles, ascending, that are no emitters, though they shine: runtime/bake/lamps.h
 };
 
 /// A triangle that emits, as its samples stand for it.
@@ -40,6 +41,7 @@ struct LightList
     std::vector<gpu::GpuLight> lights;
     uint32_t sunLayers = 0, skyLayers = 0, pointLayers = 0, emitterLayers = 0;
     std::vector<EmittingTriangle> emitters; // by triangle
+    bool shines = false;                    // some triangle does, be it an emitter or a lamp
     LightSettings settings;                 // with the sizes of maps halved until each kind takes at most kShadowBytes
 };
 inline constexpr int kNoShadowMap = -1; // GpuLight::shadowLayer of a sample that rays shadow

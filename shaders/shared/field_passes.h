@@ -1,4 +1,5 @@
 // What a pass over the light field is bound to, and its constants: shaders/light_field.glsl declares them.
+#include "shared/lamps.h"
 #include "shared/light_field.h"
 #ifndef SCONCE_FIELD_PASSES_H
 #define SCONCE_FIELD_PASSES_H
@@ -28,13 +29,15 @@ const uint kByTexels = 4u; // words are texels of buffers; else they are read by
     DeviceAddress radianceAddress; \
     DeviceAddress irradianceAddress; \
     DeviceAddress prefilteredAddress; \
-    DeviceAddress surfaceAddress;
+    DeviceAddress surfaceAddress; \
+    DeviceAddress lampAddress; \
+    uint lampCount;
 #ifdef __cplusplus
 struct FieldBlock
 {
     SCONCE_FIELD_BLOCK
 };
-SCONCE_CHECK_SIZE(FieldBlock, 264);
+SCONCE_CHECK_SIZE(FieldBlock, 280);
 #endif
 
 SCONCE_STRUCTS_END

@@ -18,6 +18,10 @@ const uint kFillLightBinding = 4u; // reconstruct.comp
 const uint kGatherDiffuseBinding = 4u; // gather_light.comp
 const uint kGatherRoughBinding = 5u;
 const uint kSurfaceDiffuseBinding = 4u; // surface_light.comp
+const uint kLampDiffuseBinding = 4u; // lamp_light.comp
+const uint kLampRoughBinding = 5u;
+const uint kLampGlossyBinding = 6u;
+const uint kLampMirrorBinding = 7u;
 const uint kFilterFromBinding = 4u; // denoise.comp
 const uint kFilterToBinding = 5u;
 const uint kBlendLightBinding = 4u; // temporal.comp
@@ -57,6 +61,8 @@ const uint kLookUpRestId = 15u;  // surface_light.comp: the list that it leaves 
 const uint kIsRestId = 16u;      // surface_light.comp
 const uint kLookUpTermsId = 17u; // classify_tiles.comp: of the first list, the bits of its terms; then of the next; 0: it lists none
 const uint kLookUpKindId = 20u;  // of the first list, kLookUpsPerPixel...; then of the next
+
+const uint kLampTermsId = 23u; // lamp_light.comp: bits of the terms that are made
 
 struct DenoisePush
 {

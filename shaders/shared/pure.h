@@ -21,6 +21,7 @@ template <class Real> struct Pure
 
 #include "shared/brdf_text.h"
 #include "shared/normal_map.h"
+#include "shared/polygon_light.h"
 };
 
 } // namespace sconce::pure_text
