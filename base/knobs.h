@@ -308,7 +308,8 @@ inline constexpr Knob<uint32_t> lampTexels{
     .most = 8192,
     .only = kLampTexels,
     .unit = "texels",
-    .what = "Side of the shadow map of an emitter whose shadows are sharper than surface light's texels, and which is kept as a lamp; 0: none is",
+    .what = "Side of the shadow map of an emitter whose shadows are sharper than surface light's texels, and which is kept as a lamp; 0: "
+            "none is",
     .buys = "sharp shadows and reflections of small far emitters, without noise; 2 bytes a texel, and a pass over the picture",
     .readme = true};
 inline constexpr std::string_view kGathers[] = {"triangles", "field"};

@@ -36,7 +36,8 @@ void main()
         float given = polygonIrradiance(c.a, c.b, c.c, c.d);
         if (!(given > 0.0)) continue;
         vec3 seen = lamp.radiance * lampVisibility(lamp, point, plane);
-        arriving += seen * (given / kBrdfPi);
+        float cosine = dot(p.normal, normalize(lamp.centre - point));
+        arriving += seen * (given / kBrdfPi * diffuseAlong(cosine, p.brdf.roughness));
         if ((terms & ~(1u << kTermDiffuse)) != 0u) reflected += seen * polygonReflected(lobes, ggxAlpha(p.brdf.roughness), view, c.a, c.b, c.c, c.d);
     }
     if ((terms & (1u << kTermDiffuse)) != 0u) imageStore(diffuse, at, imageLoad(diffuse, at) + vec4(arriving, 0.0));

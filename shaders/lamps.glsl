@@ -92,8 +92,7 @@ float lampVisibility(Lamp lamp, vec3 point, vec3 plane)
         uint word = lampWord(lamp.firstWord + (tap.y * lamp.size + tap.x) / 2u);
         float depth = lampDepth(lamp, (tap.x & 1u) != 0u ? word >> 16 : word & 0xffffu);
         vec2 middle = lamp.low + (vec2(tap) + 0.5) * texel;
-        bool isBefore = all(lessThanEqual(abs(off), reachAt(lamp, r, depth) + kLampNearest * texel));
-        shaded += isBefore && depth < depthOfPlane(r, middle) ? 1.0 : 0.0;
+        shaded += depth < depthOfPlane(r, middle) ? 1.0 : 0.0;
     }
     return 1.0 - shaded / float(kShadowTaps);
 }

@@ -394,7 +394,8 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         bake.field.lampMaps = std::move(lamps.maps);
         DeviceSceneDesc sceneDesc = settings.scene;
         if (info.surfaceSize > 0) // emitters are shadowed by rays, and rays find the sky
-            sceneDesc.light = {.emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
+            sceneDesc.light = {
+                .emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
         auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
         auto baker = ProbeBaker::create(**gpu, *deviceScene, info);

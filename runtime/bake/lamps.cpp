@@ -106,7 +106,8 @@ std::optional<std::array<vec3, 4>> outlineOf(const Scene& scene, const Part& par
     const std::array<vec3, 3> first = corners(part.triangles[0]);
     if (part.triangles.size() == 1) return std::array<vec3, 4>{first[0], first[1], first[2], first[2]};
     const std::array<vec3, 3> second = corners(part.triangles[1]);
-    if (std::abs(glm::dot(geometricNormal(scene, part.triangles[0]), geometricNormal(scene, part.triangles[1]))) < kFlat) return std::nullopt;
+    if (std::abs(glm::dot(geometricNormal(scene, part.triangles[0]), geometricNormal(scene, part.triangles[1]))) < kFlat)
+        return std::nullopt;
     const auto isIn = [](vec3 p, const std::array<vec3, 3>& of) { return std::ranges::find(of, p) != of.end(); };
     const auto lone = std::ranges::find_if(first, [&](vec3 p) { return !isIn(p, second); });
     const auto other = std::ranges::find_if(second, [&](vec3 p) { return !isIn(p, first); });
@@ -162,7 +163,8 @@ double lightOfAll(const std::vector<Part>& parts, std::span<const Place> places)
         {
             const vec3 to = part.centre - place.position;
             const float d2 = std::max(glm::dot(to, to), part.area);
-            sum += double(glm::dot(part.emission, kLuminance) * 0.25f * part.area * std::max(glm::dot(place.normal, to), 0.0f) / (d2 * std::sqrt(d2)));
+            sum += double(glm::dot(part.emission, kLuminance) * 0.25f * part.area * std::max(glm::dot(place.normal, to), 0.0f) /
+                          (d2 * std::sqrt(d2)));
         }
     return sum;
 }

@@ -123,7 +123,9 @@ struct Gatherer : LightFieldTwin<float>
             // No probe sees the place: there the ray is scattered itself.
             const vec3 scattered = scatteredBy(place.surface);
             const float goesOn = luminance(scattered);
-            brought += tint * scattered * (emittersByDiffuse(place, random) + (deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) / kBrdfPi);
+            brought += tint * scattered *
+                       (emittersByDiffuse(place, random) +
+                        (deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) / kBrdfPi);
             if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
             tint *= scattered / goesOn;
             const vec3 up = sampleCosine(random.uniform2());
@@ -323,8 +325,9 @@ struct Gatherer : LightFieldTwin<float>
     gpu::SurfaceTexel withLamps(gpu::SurfaceTexel known, vec3 position, vec3 plane) const
     {
         if (!source.lamps.empty())
-            known.sent = packSharedExponent(unpackSharedExponent(known.sent) +
-                                            unpackRootOfColor(known.albedo) * lampLightAt(position, unpackNormal8(known.normal), plane) / kBrdfPi);
+            known.sent =
+                packSharedExponent(unpackSharedExponent(known.sent) +
+                                   unpackRootOfColor(known.albedo) * lampLightAt(position, unpackNormal8(known.normal), plane) / kBrdfPi);
         return known;
     }
 

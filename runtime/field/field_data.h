@@ -47,7 +47,7 @@ struct FieldBytes
 {
     size_t distance = 0, normals = 0, radiance = 0, irradiance = 0, index = 0; // irradiance: with the patches and surface light
     size_t prefiltered = 0;                                                    // of the radiance
-    size_t lamps = 0;                                          // with their maps: of the irradiance
+    size_t lamps = 0;                                                          // with their maps: of the irradiance
     size_t surface = 0, cells = 0, refined = 0, hidden = 0; // surface light with all that follows its texels, and that: of the irradiance
     size_t total() const { return distance + normals + radiance + irradiance + index; }
 };

@@ -92,8 +92,9 @@ enum Section : uint32_t
     lampMaps,
     sectionCount
 };
-constexpr const char* kSectionNames[sectionCount] = {"meta",   "info",          "probes",      "distance", "radiance",     "irradiance",
-                                                     "octree", "octree texels", "prefiltered", "patches",  "surface light", "lamps", "lamp maps"};
+constexpr const char* kSectionNames[sectionCount] = {"meta",          "info",   "probes",        "distance",    "radiance",
+                                                     "irradiance",    "octree", "octree texels", "prefiltered", "patches",
+                                                     "surface light", "lamps",  "lamp maps"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader

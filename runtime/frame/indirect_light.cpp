@@ -133,10 +133,11 @@ Status IndirectLight::State::makeGather()
 /// Over the whole picture: lamps are of scenes that they light as a sun does.
 Status IndirectLight::State::makeLamps()
 {
-    const std::pair<uint32_t, const GpuImage*> images[] = {{gpu::kTermDiffuse, readsSurfaces() || tracesDiffuse() ? &diffuseImage : nullptr},
-                                                           {gpu::kTermRough, &roughImage},
-                                                           {gpu::kTermGlossy, &glossyImage},
-                                                           {gpu::kTermMirror, &mirrorImage}};
+    const std::pair<uint32_t, const GpuImage*> images[] = {
+        {gpu::kTermDiffuse, readsSurfaces() || tracesDiffuse() ? &diffuseImage : nullptr},
+        {gpu::kTermRough, &roughImage},
+        {gpu::kTermGlossy, &glossyImage},
+        {gpu::kTermMirror, &mirrorImage}};
     uint32_t terms = 0;
     const GpuImage* any = nullptr;
     for (const auto& [term, image] : images)

@@ -22,7 +22,7 @@ struct LightSettings
     uint32_t pointShadow = knobs::pointShadow.value; // texels a side of a point light's six faces
     uint32_t emitterShadow = knobs::emitterShadow.value; // the same for emitter samples
     uint32_t skyShadow = knobs::skyShadow.value;         // texels a side of a sky direction's map
-    std::vector<uint32_t> lamps = {};                    // triangles, ascending, that are no emitters, though they shine: runtime/bake/lamps.h
+    std::vector<uint32_t> lamps = {}; // triangles, ascending, that are no emitters, though they shine: runtime/bake/lamps.h
 };
 
 /// A triangle that emits, as its samples stand for it.

@@ -158,6 +158,12 @@ SCONCE_PURE vec3 hemisphericalDiffuse(BrdfSurface surface)
 }
 SCONCE_PURE vec3 hemisphericalAlbedo(BrdfSurface surface) { return hemisphericalDiffuse(surface) + hemisphericalSpecular(surface); }
 
+/// The light that the diffuse lobe reflects of what comes at a cosine to the normal, over that of light from all sides.
+SCONCE_PURE real diffuseAlong(real nl, real roughness)
+{
+    return (real(1.0) - dielectricShare(whiteShares(nl, roughness))) / (real(1.0) - meanDielectricShare(roughness));
+}
+
 /// Both lobes; 0 when either direction is below the surface.
 SCONCE_PURE BrdfValue evaluateLobes(BrdfLobes lobes, real roughness, vec3 normal, vec3 view, vec3 light)
 {
@@ -170,8 +176,7 @@ SCONCE_PURE BrdfValue evaluateLobes(BrdfLobes lobes, real roughness, vec3 normal
     real sumLength = sqrt(dot(sum, sum));
     if (!(nl > real(0.0)) || !(nv > real(0.0)) || !(sumLength > real(0.0))) return value;
     vec3 halfway = sum / sumLength;
-    real left = (real(1.0) - dielectricShare(whiteShares(nl, roughness))) / (real(1.0) - meanDielectricShare(roughness));
-    value.diffuse = lobes.diffuse * (left / kBrdfPi);
+    value.diffuse = lobes.diffuse * (diffuseAlong(nl, roughness) / kBrdfPi);
     if (!isMirror(roughness))
     {
         real alpha = ggxAlpha(roughness);

@@ -47,9 +47,9 @@ template <class F> auto overSquare(const Corners& corners, int n, F f) -> declty
 TEST(PolygonLight, IrradianceIsThePublishedFormFactor)
 {
     const double x = 1.0, y = 1.0; // sides over distance
-    const double factor =
-        (x / std::sqrt(1.0 + x * x) * std::atan(y / std::sqrt(1.0 + x * x)) + y / std::sqrt(1.0 + y * y) * std::atan(x / std::sqrt(1.0 + y * y))) /
-        (2.0 * std::numbers::pi);
+    const double factor = (x / std::sqrt(1.0 + x * x) * std::atan(y / std::sqrt(1.0 + x * x)) +
+                           y / std::sqrt(1.0 + y * y) * std::atan(x / std::sqrt(1.0 + y * y))) /
+                          (2.0 * std::numbers::pi);
     const double found = Text::polygonIrradiance({0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2});
     EXPECT_NEAR(found / std::numbers::pi, factor, 1e-12);
     EXPECT_NEAR(double(Pure<float>::polygonIrradiance({0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2})), found, 1e-6);
@@ -96,12 +96,11 @@ TEST(PolygonLight, ReflectionIsTheQuadratureOfTheLobe)
                 if (direction.z < 0.5 * angle) continue;
                 const Corners c = squareAt(direction, angle, random);
                 const Text::BrdfLobes lobes = Text::lobesAt(surface, nv);
-                const double truth = overSquare(c, 300,
-                                                [&](glm::dvec3 to)
-                                                {
-                                                    return Text::evaluateLobes(lobes, roughness, {0, 0, 1}, view, to).specular.g *
-                                                           std::max(to.z, 0.0);
-                                                });
+                const double truth =
+                    overSquare(c, 300,
+                               [&](glm::dvec3 to) {
+                                   return Text::evaluateLobes(lobes, roughness, {0, 0, 1}, view, to).specular.g * std::max(to.z, 0.0);
+                               });
                 const double found = Text::polygonReflected(lobes, alpha, view, c[0], c[1], c[2], c[3]).g;
                 off += std::abs(found - truth);
                 sum += found;
