@@ -13,9 +13,11 @@ layout(constant_id = kEveryLogId) const uint kEveryLog = 0u; // log2 of the tile
 layout(constant_id = kLookUpTermsId) const uint kTermsOfFirst = 0u;
 layout(constant_id = kLookUpTermsId + 1u) const uint kTermsOfSecond = 0u;
 layout(constant_id = kLookUpTermsId + 2u) const uint kTermsOfThird = 0u;
+layout(constant_id = kLookUpTermsId + 3u) const uint kTermsOfFourth = 0u;
 layout(constant_id = kLookUpKindId) const uint kKindOfFirst = kLookUpsPerPixel;
 layout(constant_id = kLookUpKindId + 1u) const uint kKindOfSecond = kLookUpsPerPixel;
 layout(constant_id = kLookUpKindId + 2u) const uint kKindOfThird = kLookUpsPerPixel;
+layout(constant_id = kLookUpKindId + 3u) const uint kKindOfFourth = kLookUpsPerPixel;
 layout(scalar, set = 1, binding = kTileBinding) buffer SconceTiles
 {
     TileRuns runs[kTermCount];
@@ -40,8 +42,8 @@ shared vec3 pixelNormal[64];
 shared uint foundCount[kMostLookUpLists], foundFirst[kMostLookUpLists];
 shared uint found[kMostLookUpLists * 64u];
 
-uint termsOfList(uint list) { return list == 0u ? kTermsOfFirst : list == 1u ? kTermsOfSecond : kTermsOfThird; }
-uint kindOfList(uint list) { return list == 0u ? kKindOfFirst : list == 1u ? kKindOfSecond : kKindOfThird; }
+uint termsOfList(uint list) { return list == 0u ? kTermsOfFirst : list == 1u ? kTermsOfSecond : list == 2u ? kTermsOfThird : kTermsOfFourth; }
+uint kindOfList(uint list) { return list == 0u ? kKindOfFirst : list == 1u ? kKindOfSecond : list == 2u ? kKindOfThird : kKindOfFourth; }
 
 uint quadPixel(uint first, uint i) { return first + (i & 1u) + (i >> 1) * kTileSide; }
 

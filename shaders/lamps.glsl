@@ -35,66 +35,101 @@ float depthOfPlane(Receiver r, vec2 tangents)
 /// By how far at most, as tangents, what shades a part of the lamp is off the way to its middle: similar triangles.
 float reachAt(Lamp lamp, Receiver r, float depth) { return lamp.reach * max(1.0 / depth - 1.0 / r.at.z, 0.0); }
 
-/// Of the blocks of a level of the map within `reach` of the receiver that may shade it, the sum of their reciprocal depths, and how many.
-vec2 blockersOf(Lamp lamp, Receiver r, uint level, float reach)
+/// Of the blocks of a level of the map within `reach` of the receiver.
+struct Blockers
+{
+    float nearness; // sum of the reciprocal depths of those that may shade it
+    float count;    // of these
+    float least;    // depth of these
+    bool closed;    // every block is wholly before it
+};
+Blockers blockersOf(Lamp lamp, Receiver r, uint level, float reach)
 {
     uint blockLog = 3u * level, blocks = lamp.size >> blockLog;
     uint first = lamp.firstWord + lamp.size * lamp.size / 2u + (level > 1u ? (lamp.size >> 3) * (lamp.size >> 3) : 0u);
-    vec2 width = float(1u << blockLog) / lamp.perTangent;
+    vec2 texel = 1.0 / lamp.perTangent, width = float(1u << blockLog) * texel;
+    // The plane's depth is greatest at one of a block's corners, and least at the other.
+    vec2 farther = 0.5 * width * mix(vec2(1.0), vec2(-1.0), greaterThan(r.inverse.xy, vec2(0.0)));
     ivec2 low = max(ivec2(floor((r.at.xy - reach - lamp.low) / width)), ivec2(0)), high = min(ivec2((r.at.xy + reach - lamp.low) / width), ivec2(blocks) - 1);
-    vec2 found = vec2(0.0);
+    Blockers found = Blockers(0.0, 0.0, 1e30, true);
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x)
         {
-            float depth = lampDepth(lamp, lampWord(first + uint(y) * blocks + uint(x)) & 0xffffu);
+            uint word = lampWord(first + uint(y) * blocks + uint(x));
+            float depth = lampDepth(lamp, word & 0xffffu);
             vec2 middle = lamp.low + (vec2(x, y) + 0.5) * width;
-            // The plane's depth is greatest at one of the block's corners.
-            float plane = depthOfPlane(r, middle + 0.5 * width * mix(vec2(1.0), vec2(-1.0), greaterThan(r.inverse.xy, vec2(0.0))));
-            vec2 off = max(abs(middle - r.at.xy) - 0.5 * width, vec2(0.0)), texel = 1.0 / lamp.perTangent;
-            float within = reachAt(lamp, r, depth);
-            if (depth < plane && all(lessThanEqual(off, within + texel))) found += vec2(1.0 / depth, 1.0);
+            found.closed = found.closed && lampDepth(lamp, word >> 16) < depthOfPlane(r, middle - farther);
+            vec2 off = max(abs(middle - r.at.xy) - 0.5 * width, vec2(0.0));
+            bool isBefore = depth < depthOfPlane(r, middle + farther) && all(lessThanEqual(off, reachAt(lamp, r, depth) + texel));
+            found.nearness += isBefore ? 1.0 / depth : 0.0;
+            found.count += isBefore ? 1.0 : 0.0;
+            found.least = isBefore ? min(found.least, depth) : found.least;
         }
     return found;
 }
 
-/// Share of a lamp that a place sees: soft shadows by the disc of what stands before it (Fernando 2005, "Percentage-Closer Soft Shadows"), where only
-/// what is before the lamp by its own depth counts (Guennebaud, Barthe and Paulin 2006, "Real-time Soft Shadow Mapping by Backprojection"). No noise.
-/// Cost: 4 reads where nothing near it is before the lamp, else about 30, and 48 in shadows and their edges.
-/// @param plane  unit, the surface's own normal
-float lampVisibility(Lamp lamp, vec3 point, vec3 plane)
+/// What shades a place from a lamp.
+struct LampShade
 {
+    Receiver receiver;
+    float seen; // share of the lamp; negative: not known, for its edge is near, and `disc` is
+    vec2 disc;  // that the lamp is, from the place past what stands before it, tangents
+};
+
+/// Cost: 4 reads where nothing near is before the lamp, else some 10 to 30.
+/// @param plane  unit, the surface's own normal
+LampShade lampShade(Lamp lamp, vec3 point, vec3 plane)
+{
+    LampShade shade;
+    shade.seen = 0.0;
+    shade.disc = vec2(0.0);
     vec3 from = point - lamp.centre;
     Receiver r;
     r.at = vec3(dot(from, lamp.axisX), dot(from, lamp.axisY), dot(from, lamp.normal));
-    if (!(r.at.z > 0.0)) return 0.0;
     r.at.xy /= r.at.z;
-    vec2 inMap = (r.at.xy - lamp.low) * lamp.perTangent;
-    if (any(lessThan(inMap, vec2(0.0))) || any(greaterThanEqual(inMap, vec2(lamp.size)))) return 0.0;
+    vec2 inMap = (r.at.xy - lamp.low) * lamp.perTangent, texel = 1.0 / lamp.perTangent;
     vec3 n = vec3(dot(plane, lamp.axisX), dot(plane, lamp.axisY), dot(plane, lamp.normal)), along = vec3(r.at.xy, 1.0);
     float facing = -dot(n, along) / length(along);
-    if (!(facing > 0.0)) return 0.0;
+    if (!(r.at.z > 0.0) || any(lessThan(inMap, vec2(0.0))) || any(greaterThanEqual(inMap, vec2(lamp.size))) || !(facing > 0.0)) return shade;
     n -= along * (max(kLampSteepest - facing, 0.0) / length(along));
     r.inverse = n / (dot(n, along) * r.at.z);
-    vec2 texel = 1.0 / lamp.perTangent;
     r.slack = 2.0 * (lamp.far - lamp.near) / float(kLampFar - 1u) +
               kLampSlack * r.at.z * (r.at.z * dot(abs(r.inverse.xy), texel) + max(texel.x, texel.y));
-    vec2 coarse = blockersOf(lamp, r, 2u, reachAt(lamp, r, max(lamp.near, 1e-6)));
-    if (!(coarse.y > 0.0)) return 1.0;
-    vec2 found = blockersOf(lamp, r, 1u, reachAt(lamp, r, max(lamp.near, 1e-6)));
-    if (!(found.y > 0.0)) return 1.0;
-    vec2 disc = max(vec2(reachAt(lamp, r, found.y / found.x)), kLampNearest * texel);
+    shade.receiver = r;
+    shade.seen = 1.0;
+    Blockers coarse = blockersOf(lamp, r, 2u, reachAt(lamp, r, max(lamp.near, 1e-6)));
+    if (!(coarse.count > 0.0)) return shade;
+    Blockers found = blockersOf(lamp, r, 1u, max(reachAt(lamp, r, coarse.least), kLampNearest * max(texel.x, texel.y)));
+    if (!(found.count > 0.0)) return shade;
+    shade.seen = found.closed ? 0.0 : -1.0;
+    shade.disc = max(vec2(reachAt(lamp, r, found.count / found.nearness)), kLampNearest * texel);
+    return shade;
+}
+
+/// Share of a lamp that a place sees where lampShade() doesn't know. Cost: 48 reads.
+float seenOfLamp(Lamp lamp, LampShade shade)
+{
+    Receiver r = shade.receiver;
     float shaded = 0.0;
     for (int i = 0; i < kShadowTaps; ++i)
     {
         float angle = float(i) * kGoldenAngle; // Vogel's spiral, even over the disc
-        vec2 off = sqrt((float(i) + 0.5) / float(kShadowTaps)) * vec2(cos(angle), sin(angle)) * disc;
+        vec2 off = sqrt((float(i) + 0.5) / float(kShadowTaps)) * vec2(cos(angle), sin(angle)) * shade.disc;
         uvec2 tap = uvec2(clamp(floor((r.at.xy + off - lamp.low) * lamp.perTangent), vec2(0.0), vec2(lamp.size - 1u)));
         uint word = lampWord(lamp.firstWord + (tap.y * lamp.size + tap.x) / 2u);
         float depth = lampDepth(lamp, (tap.x & 1u) != 0u ? word >> 16 : word & 0xffffu);
-        vec2 middle = lamp.low + (vec2(tap) + 0.5) * texel;
-        shaded += depth < depthOfPlane(r, middle) ? 1.0 : 0.0;
+        shaded += depth < depthOfPlane(r, lamp.low + (vec2(tap) + 0.5) / lamp.perTangent) ? 1.0 : 0.0;
     }
     return 1.0 - shaded / float(kShadowTaps);
+}
+
+/// Share of a lamp that a place sees: soft shadows by the disc of what stands before it (Fernando 2005, "Percentage-Closer Soft Shadows"), whose
+/// width is of what is before the lamp by its own depth (Guennebaud, Barthe and Paulin 2006, "Real-time Soft Shadow Mapping by Backprojection"), found
+/// by least and most depths of blocks. No noise.
+float lampVisibility(Lamp lamp, vec3 point, vec3 plane)
+{
+    LampShade shade = lampShade(lamp, point, plane);
+    return shade.seen < 0.0 ? seenOfLamp(lamp, shade) : shade.seen;
 }
 
 struct LampCorners

@@ -42,3 +42,22 @@ Pixel readLookUp(inout LookUp l)
     p.view = normalize(frame.eye - p.position);
     return p;
 }
+
+#ifdef SCONCE_LEAVES_LOOK_UPS
+// Of a pass that leaves some look-ups to a second dispatch: where lanes are vectors, few that take long would have all wait.
+layout(constant_id = kLookUpRestId) const uint kRest = 0u;  // the list that look-ups are left to
+layout(constant_id = kIsRestId) const bool kIsRest = false; // this is the second dispatch
+
+/// Leaves a look-up, or each of its pixels alone.
+void leave(LookUp l, bool alone)
+{
+    uint count = alone ? uint(l.pixels) : 1u;
+    uint index = atomicAdd(lookUpRuns[kRest].count, count);
+    atomicMax(lookUpRuns[kRest].y, (index + count - 1u) / 64u / kTileRow + 1u);
+    for (uint i = 0u; i < count; ++i)
+    {
+        uvec2 at = uvec2(pixelOf(l, int(i)));
+        tiles[lookUpWord(kRest, index + i)] = at.x | (at.y << 16) | (!alone && l.pixels > 1 ? kLookUpOfQuad : 0u);
+    }
+}
+#endif

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
-#define SCONCE_TILES_ARE coherent
+#define SCONCE_LEAVES_LOOK_UPS
 #include "tiles.glsl"
 #include "lookups.glsl"
 
@@ -11,24 +11,9 @@
 // lanes are vectors, few that search would have all wait.
 // Dispatch: see lookups.glsl.
 layout(local_size_x = 64) in;
-layout(constant_id = kLookUpRestId) const uint kRest = 0u; // the list that look-ups are left to
-layout(constant_id = kIsRestId) const bool kIsRest = false; // this is the second dispatch
 layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
 
 const float kMostOfTexel = 0.5; // of its width, that four pixels of one look-up span
-
-/// Leaves a look-up, or each of its pixels alone.
-void leave(LookUp l, bool alone)
-{
-    uint count = alone ? uint(l.pixels) : 1u;
-    uint index = atomicAdd(lookUpRuns[kRest].count, count);
-    atomicMax(lookUpRuns[kRest].y, (index + count - 1u) / 64u / kTileRow + 1u);
-    for (uint i = 0u; i < count; ++i)
-    {
-        uvec2 at = uvec2(pixelOf(l, int(i)));
-        tiles[lookUpWord(kRest, index + i)] = at.x | (at.y << 16) | (!alone && l.pixels > 1 ? kLookUpOfQuad : 0u);
-    }
-}
 
 /// Of what no texel shows by its shading normal: bad smooth normals can be bent so far that nothing seems to be of the surface.
 SurfaceLight lightOfRest(LookUp l, Pixel p, vec3 point)

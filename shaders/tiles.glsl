@@ -1,7 +1,9 @@
 // Which pixel an invocation works on: a pass runs on the tiles of a list, or over the whole picture. After gbuffer_read.glsl.
 layout(constant_id = kTiledId) const bool kTiled = true; // false: over the whole picture, every pixel computed, needed or not
-#ifndef SCONCE_TILES_ARE
-#define SCONCE_TILES_ARE readonly // a pass that adds to the lists says: coherent
+#ifdef SCONCE_LEAVES_LOOK_UPS
+#define SCONCE_TILES_ARE coherent // the pass adds to the lists
+#else
+#define SCONCE_TILES_ARE readonly
 #endif
 layout(scalar, set = 1, binding = kTileBinding) SCONCE_TILES_ARE buffer SconceTiles
 {

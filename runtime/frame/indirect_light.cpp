@@ -98,8 +98,8 @@ Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipe
                     {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}});
 }
 
-/// Of the pass that reads light at surfaces, whose light scales rough reflections, too, and of what it leaves; then of the one that gathers
-/// light at probes.
+/// Of the pass that reads light at surfaces, whose light scales rough reflections, too, and of the one that adds lamps; of what the first
+/// leaves; of the one that gathers light at probes; of what lamps leave.
 std::vector<TileList::LookUps> IndirectLight::State::lookUps() const
 {
     constexpr uint32_t diffuse = 1u << gpu::kTermDiffuse, rough = 1u << gpu::kTermRough;
@@ -107,10 +107,13 @@ std::vector<TileList::LookUps> IndirectLight::State::lookUps() const
     std::vector<TileList::LookUps> lists;
     const bool bent = field.info().surfaceDirections;
     const uint32_t alsoRough = effects.rough ? rough : 0;
-    if (readsSurfaces()) lists = {{diffuse | alsoRough, bent ? gpu::kLookUpsBent : gpu::kLookUpsPerQuad}, {0, gpu::kLookUpsPerPixel}};
+    constexpr uint32_t all = (1u << gpu::kTermCount) - 1;
+    if (readsSurfaces() || hasLamps())
+        lists = {{hasLamps() ? all : diffuse | alsoRough, bent ? gpu::kLookUpsBent : gpu::kLookUpsPerQuad}, {0, gpu::kLookUpsPerPixel}};
     const uint32_t gathered = (gathersDiffuse() ? diffuse : 0) | alsoRough;
     // Each pixel draws one probe's patches by lot.
     if (gathered != 0) lists.push_back({gathered, effects.patches ? gpu::kLookUpsPerPixel : gpu::kLookUpsPerQuad});
+    if (hasLamps()) lists.push_back({0, gpu::kLookUpsPerPixel});
     return lists;
 }
 
@@ -130,7 +133,6 @@ Status IndirectLight::State::makeGather()
                      {gpu::kBySurfaceId, readsSurfaces() ? 1u : 0u}});
 }
 
-/// Over the whole picture: lamps are of scenes that they light as a sun does.
 Status IndirectLight::State::makeLamps()
 {
     const std::pair<uint32_t, const GpuImage*> images[] = {
@@ -144,12 +146,21 @@ Status IndirectLight::State::makeLamps()
         if (image && *image) terms |= 1u << term, any = image;
     if (terms == 0) return success();
     const auto of = [&](uint32_t term) { return terms & (1u << term) ? images[term].second : any; };
-    return makePass(lampPass, lampSet, lamp_light_comp,
-                    {{gpu::kLampDiffuseBinding, of(gpu::kTermDiffuse)},
-                     {gpu::kLampRoughBinding, of(gpu::kTermRough)},
-                     {gpu::kLampGlossyBinding, of(gpu::kTermGlossy)},
-                     {gpu::kLampMirrorBinding, of(gpu::kTermMirror)}},
-                    {{gpu::kLampTermsId, terms}});
+    const uint32_t left = lampLookUps = uint32_t(lookUps().size()) - 1;
+    for (uint32_t isRest : {0u, 1u})
+        if (auto s = makePass(isRest ? lampRestPass : lampPass, lampSet, lamp_light_comp,
+                              {{gpu::kLampDiffuseBinding, of(gpu::kTermDiffuse)},
+                               {gpu::kLampRoughBinding, of(gpu::kTermRough)},
+                               {gpu::kLampGlossyBinding, of(gpu::kTermGlossy)},
+                               {gpu::kLampMirrorBinding, of(gpu::kTermMirror)}},
+                              {{gpu::kLampTermsId, terms},
+                               {gpu::kLampEachId, field.info().surfaceDirections},
+                               {gpu::kLookUpListId, isRest ? left : 0},
+                               {gpu::kLookUpRestId, left},
+                               {gpu::kIsRestId, isRest}});
+            !s)
+            return s;
+    return success();
 }
 
 IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes)
@@ -268,19 +279,19 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     };
     // Ahead of all passes, which run by its lists.
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
-    const auto readSurfaces = [&]
+    const auto inTwo = [&](const Pipeline& first, const Pipeline& rest, const DescriptorSet& set, uint32_t left)
     {
-        for (const Pipeline* surface : {&surfacePass, &surfaceRestPass})
+        for (const Pipeline* half : {&first, &rest})
         {
-            run(*surface, surfaceSet, byLookUps(surface == &surfaceRestPass));
+            run(*half, set, byLookUps(half == &rest ? left : 0));
             // The first adds to the list that the second runs by, and both may write to the lists that all later passes run by, as far as a
-            // driver can tell. The light that they store is read by the gathering pass, which scales rough reflections by it.
+            // driver can tell. The light at surfaces is read by the gathering pass, which scales rough reflections by it.
             memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
                           VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
                               VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
         }
     };
-    if (surfacePass) timed("surface light", readSurfaces);
+    if (surfacePass) timed("surface light", [&] { inTwo(surfacePass, surfaceRestPass, surfaceSet, 1); });
     scan("surface light", {&diffuseImage});
     pass(gatherPass, gatherSet, "gather light", byLookUps(gatherLookUps()));
     scan("gather light", {&diffuseImage, &roughImage});
@@ -312,7 +323,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         // Read after write: the light of lamps is added to what the passes and filters before have stored.
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-        pass(lampPass, lampSet, "lamp light", [&] { gpu->vk.CmdDispatch(cmd, (desc.width + 7) / 8, (desc.height + 7) / 8, 1); });
+        timed("lamp light", [&] { inTwo(lampPass, lampRestPass, lampSet, lampLookUps); });
         scan("lamp light", {&diffuseImage, &roughImage, &glossyImage, &mirrorImage});
     }
     // Who reads the outputs is the host's choice, so all commands; nothing later in the frame may write them without a barrier of its own.

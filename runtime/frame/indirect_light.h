@@ -30,8 +30,9 @@ struct IndirectLight::State
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
     DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, lampSet, glossyFillSet, diffuseFillSet;
-    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, lampPass, glossyFill, diffuseFill;
+    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, lampPass, lampRestPass, glossyFill, diffuseFill;
     Denoiser denoiser;
+    uint32_t lampLookUps = 0; // the list of what the first pass over lamps leaves
 
     State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes);
     Status make();
@@ -58,7 +59,8 @@ private:
     bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
     bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }
     std::vector<TileList::LookUps> lookUps() const;
-    uint32_t gatherLookUps() const { return readsSurfaces() ? 2 : 0; } // the gathering pass's list of them
+    bool hasLamps() const { return field.state().lampCount > 0; }
+    uint32_t gatherLookUps() const { return readsSurfaces() || hasLamps() ? 2 : 0; } // the gathering pass's list of them
 };
 
 Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc,

@@ -40,7 +40,7 @@ const uint kLookUpsPerPixel = 1u;
 const uint kLookUpsPerQuad = 2u; // of like normals and roughness
 const uint kLookUpsBent = 3u;    // of normals that textures bend
 const uint kLookUpOfQuad = 0x80000000u; // in a list's word
-const uint kMostLookUpLists = 3u;
+const uint kMostLookUpLists = 4u;
 
 /// Where a list's passes run: the arguments of their indirect dispatch and the number of tiles, or look-ups, in the list.
 struct TileRuns

@@ -57,12 +57,13 @@ const uint kMadeId = 11u; // compose.comp
 const uint kDiffuseLayerId = 12u;
 const uint kGlossyLayerId = 13u;
 const uint kBySurfaceId = 14u; // gather_light.comp
-const uint kLookUpRestId = 15u;  // surface_light.comp: the list that it leaves look-ups to
-const uint kIsRestId = 16u;      // surface_light.comp
+const uint kLookUpRestId = 15u;  // surface_light.comp, lamp_light.comp: the list that it leaves look-ups to
+const uint kIsRestId = 16u;      // of both
 const uint kLookUpTermsId = 17u; // classify_tiles.comp: of the first list, the bits of its terms; then of the next; 0: it lists none
-const uint kLookUpKindId = 20u;  // of the first list, kLookUpsPerPixel...; then of the next
+const uint kLookUpKindId = 21u;  // of the first list, kLookUpsPerPixel...; then of the next
 
-const uint kLampTermsId = 23u; // lamp_light.comp: bits of the terms that are made
+const uint kLampTermsId = 25u; // lamp_light.comp: bits of the terms that are made
+const uint kLampEachId = 26u;  // lamp_light.comp
 
 struct DenoisePush
 {
