@@ -19,6 +19,7 @@ layout(set = 1, binding = kLampGlossyBinding, rgba32f) uniform image2D glossy;
 layout(set = 1, binding = kLampMirrorBinding, rgba32f) uniform image2D mirror;
 
 const float kNarrow = 0.25; // roughness below which a reflection of a lamp differs from pixel to pixel
+const float kMostOfEdge = 0.5; // of half its width, that four pixels of one look-up span
 const uint kReflections = (1u << kTermRough) | (1u << kTermGlossy) | (1u << kTermMirror);
 
 struct FromLamp
@@ -61,7 +62,7 @@ void main()
     vec3 point = (p.position - field.origin) / field.scale;
     vec3 plane = geometricNormalAt(l.at, readPixel(l.at));
     if (dot(plane, plane) < 0.5) plane = p.normal;
-    bool alone = l.pixels > 1 && (terms & kReflections) != 0u && p.brdf.roughness < kNarrow;
+    bool alone = l.pixels > 1 && (terms & kReflections) != 0u && p.brdf.roughness < kNarrow, later = alone;
     float seen[kMostLamps];
     for (uint i = 0u; i < kMostLamps; ++i)
     {
@@ -70,11 +71,13 @@ void main()
         Lamp lamp = lampAt(i);
         LampShade shade = lampShade(lamp, point, plane);
         seen[i] = kIsRest && shade.seen < 0.0 ? seenOfLamp(lamp, shade) : shade.seen;
-        alone = alone || seen[i] < 0.0;
+        if (seen[i] >= 0.0) continue;
+        later = true;
+        alone = alone || l.across > kMostOfEdge * field.scale * shade.receiver.at.z * min(shade.disc.x, shade.disc.y);
     }
-    if (!kIsRest && alone)
+    if (!kIsRest && later)
     {
-        leave(l, true);
+        leave(l, alone);
         return;
     }
     FromLamp shared_ = FromLamp(vec3(0.0), vec3(0.0));

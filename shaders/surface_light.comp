@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
 
 const float kMostOfTexel = 0.5; // of its width, that four pixels of one look-up span
+const float kMostOfSoft = 1.0;  // the same where the sharpest shadows are those of lamps, which are not in it
 
 /// Of what no texel shows by its shading normal: bad smooth normals can be bent so far that nothing seems to be of the surface.
 SurfaceLight lightOfRest(LookUp l, Pixel p, vec3 point)
@@ -47,7 +48,7 @@ void main()
         SurfaceSeen seen = surfaceLightSeen(point, p.normal, point + 0.5 * field.voxel * p.normal, reads);
         found = seen.light;
         // Where texels are as fine as pixels, light changes from one to the next; where none shows the middle, one may show a pixel.
-        bool alone = lookUp.across > kMostOfTexel * field.scale * (found.probes > 0 ? seen.width : field.voxel);
+        bool alone = lookUp.across > (lampCount > 0u ? kMostOfSoft : kMostOfTexel) * field.scale * (found.probes > 0 ? seen.width : field.voxel);
         if (found.probes == 0 || alone)
         {
             leave(lookUp, alone);

@@ -40,7 +40,7 @@ load = lambda end: json.load(open(f"{at}.{end}.json"))
 row = {"label": f"{name}, {count}"}
 for texels, way in (("0", "irradiance"), ("52", "surface")):
     error, glossy, bake = load(f"{texels}.diffuse"), load(f"{texels}.glossy"), load(f"{texels}.bake")
-    ms, alone = (sum(load(end)["passes_ms"].get(p, 0.0) for p in ("gather light", "surface light", "area light", "diffuse denoise"))
+    ms, alone = (sum(load(end)["passes_ms"].get(p, 0.0) for p in ("gather light", "surface light", "area light", "diffuse denoise", "lamp light"))
                  for end in (texels, f"{texels}.alone"))
     row |= {f"{way}_relmse": f"{error['relmse']:.4f}", f"{way}_flip": f"{error['flip']:.3f}", f"{way}_mean": f"{error['mean']:.2f}",
             f"{way}_glossy_flip": f"{glossy['flip']:.3f}", f"{way}_glossy_mean": f"{glossy['mean']:.2f}", f"{way}_ms": f"{ms:.0f}", f"{way}_alone_ms": f"{alone:.1f}",

@@ -168,6 +168,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     bake.chart = settings.chart();
     bake.bounces = settings.bounces;
     bake.surfaceTexels = settings.bakedSurfaceTexels();
+    bake.surfaceRefined = settings.surfaceRefined;
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
     if (bake.grid && bake.chart == gpu::kChartOctahedral) bake.bounceShader = gridBouncePass();
@@ -181,6 +182,7 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
                                        {"chart", bake.chart},
                                        {"bounces", bake.bounces},
                                        {"surface", bake.surfaceTexels},
+                                       {"refined", bake.surfaceTexels > 0 ? bake.surfaceRefined : 0.0f},
                                        {"gather", settings.fieldGather},
                                        {"voxels", bake.octree.voxels}});
     const std::filesystem::path file = cached("fields", key, ".sconce");

@@ -31,6 +31,7 @@ struct PointSettings
     uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
     uint32_t bounces = knobs::benchBounces.value;
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // of ours; patches are of fields without
+    float surfaceRefined = knobs::surfaceRefined.value;  // share of them, where triangles are gathered from
     bool fieldGather = knobs::gather.is("field");        // surface light gathered through the field, not by rays to triangles
     int octreeVoxels = knobs::octreeVoxels.value;        // OctreeSettings::voxels
     uint32_t lowFactor = knobs::lowFactor.value;         // of an opponent; 0: bestLowFactor
