@@ -10,7 +10,7 @@ out=${OUT:-out/surfaces} size=${SIZE:-320x180} frames=${FRAMES:-5} resolution=${
 [[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
 sconce=${SCONCE:-build/release/tools/sconce}
 list=("$@")
-[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 sponza/Sponza.gltf=54 modern_hall/modern_hall.glb=50 veach_ajar/veach_ajar.glb=24)
+[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 sponza/Sponza.gltf=54 modern_hall/modern_hall.glb=50 veach_ajar/veach_ajar.glb=24 san_miguel/san_miguel.glb=128 map_zdm2/zdm2.glb=96 town=64)
 mkdir -p "$out"
 for entry in "${list[@]}"; do
     scene=${entry%%=*} count=${entry#*=} camera=()
