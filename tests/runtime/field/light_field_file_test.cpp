@@ -83,8 +83,11 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
         field.info.hidden = 5u << gpu::kHiddenShiftBits | 1u;
         field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 * 3 / 2 + cellWords(field.info) + size_t(2) * gpu::kFineWords +
                                   hiddenWords(field.info));
+        field.lamps.push_back({.radiance = glm::vec3(3.0f), .far = 2.0f, .size = 64, .firstWord = sizeof(gpu::Lamp) / 4});
+        field.lampMaps.resize(lampMapWords(64));
     }
-    for (auto* words : {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches, &field.surfaceLight})
+    for (auto* words :
+         {&field.distance, &field.radiance, &field.irradiance, &field.prefiltered, &field.patches, &field.surfaceLight, &field.lampMaps})
         for (size_t i = 0; i < words->size(); ++i) (*words)[i] = uint32_t(i / 16); // compressible, so that files are small
     field.info.bricks = field.octree.bricks = {2, 1, 1};
     field.octree.leaves = 15;
@@ -109,6 +112,9 @@ void expectSame(const FieldData& a, const FieldData& b)
     EXPECT_EQ(a.prefiltered, b.prefiltered);
     EXPECT_EQ(a.patches, b.patches);
     EXPECT_EQ(a.surfaceLight, b.surfaceLight);
+    ASSERT_EQ(a.lamps.size(), b.lamps.size());
+    EXPECT_TRUE(a.lamps.empty() || std::memcmp(a.lamps.data(), b.lamps.data(), a.lamps.size() * sizeof(gpu::Lamp)) == 0);
+    EXPECT_EQ(a.lampMaps, b.lampMaps);
     EXPECT_EQ(a.octree.texels, b.octree.texels);
     EXPECT_EQ(a.octree.boundsHigh, b.octree.boundsHigh);
     EXPECT_EQ(a.octree.voxel, b.octree.voxel);
@@ -148,8 +154,8 @@ TEST(FieldData, BytesByPartAddUpToWhatIsStored)
         EXPECT_EQ(bytes.distance + bytes.normals, field.distance.size() * 4);
         EXPECT_EQ(bytes.normals, chart == gpu::kChartOctahedral ? 3u * 16 * 16 * 2 : 0u);
         EXPECT_EQ(bytes.total(), 4 * (field.distance.size() + field.radiance.size() + field.irradiance.size() + field.prefiltered.size() +
-                                      field.patches.size() + field.surfaceLight.size()) +
-                                     16 * 4 + 3 * 48);
+                                      field.patches.size() + field.surfaceLight.size() + field.lampMaps.size()) +
+                                     field.lamps.size() * 144 + 16 * 4 + 3 * 48);
     }
 }
 
@@ -185,7 +191,7 @@ TEST_F(LightFieldFile, RoundTripOfAnEmptyField)
     FieldData field = smallField(gpu::kChartCube, 8, 1);
     field.info.probeCount = 0;
     field.probes.clear(), field.distance.clear(), field.radiance.clear(), field.irradiance.clear(), field.prefiltered.clear(),
-        field.patches.clear(), field.surfaceLight.clear(), field.octree.texels.clear();
+        field.patches.clear(), field.surfaceLight.clear(), field.lamps.clear(), field.lampMaps.clear(), field.octree.texels.clear();
     field.octree.bricks = {0, 0, 0};
     field.effects.clear();
     ASSERT_TRUE(saveField(field, file));
@@ -336,6 +342,21 @@ TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
     field = smallField();
     field.info.hidden = 3; // voxels, but no slots
     EXPECT_NE(saveField(field, file).error().message.find("no slots"), std::string::npos);
+    field = smallField();
+    field.lamps[0].size = 72; // its blocks of blocks would not be whole
+    EXPECT_NE(saveField(field, file).error().message.find("map of lamp 0 has an impossible size"), std::string::npos);
+    field = smallField();
+    field.lamps[0].firstWord = 0;
+    EXPECT_NE(saveField(field, file).error().message.find("map of lamp 0 is not where it belongs"), std::string::npos);
+    field = smallField();
+    field.lamps[0].centre.z = std::numeric_limits<float>::infinity();
+    EXPECT_NE(saveField(field, file).error().message.find("lamp 0 holds a number"), std::string::npos);
+    field = smallField();
+    field.lampMaps.pop_back();
+    EXPECT_NE(saveField(field, file).error().message.find("maps have another size"), std::string::npos);
+    field = smallField();
+    field.lamps.resize(gpu::kMostLamps + 1);
+    EXPECT_NE(saveField(field, file).error().message.find("5 lamps, above 4"), std::string::npos);
     field = smallField();
     field.info.topShift = 2;
     EXPECT_NE(saveField(field, file).error().message.find("disagrees"), std::string::npos);
