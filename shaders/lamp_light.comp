@@ -19,7 +19,7 @@ layout(set = 1, binding = kLampGlossyBinding, rgba32f) uniform image2D glossy;
 layout(set = 1, binding = kLampMirrorBinding, rgba32f) uniform image2D mirror;
 
 const float kNarrow = 0.25; // roughness below which a reflection of a lamp differs from pixel to pixel
-const float kMostOfEdge = 0.5; // of half its width, that four pixels of one look-up span
+const float kMostOfEdge = 0.15; // of half its width, that four pixels of one look-up span
 const uint kReflections = (1u << kTermRough) | (1u << kTermGlossy) | (1u << kTermMirror);
 
 struct FromLamp
