@@ -37,6 +37,6 @@ void main()
         return;
     }
     vec3 point = cellPlace(cell, place), axis = faceDirection(int(facing), vec3(0.0, 0.0, 1.0));
-    Gathered got = gatherAt(point, axis, axis, uvec2(index / 6u, facing));
+    Gathered got = gatherAt(point, axis, axis, uvec2(index / 6u, facing), 0.0);
     push.sent.word[first + facing] = knowsTooLittle(got.ends, float(push.rays)) ? 0u : packKnownLight(got.light + perRay(got.ends) * sent);
 }

@@ -36,7 +36,7 @@ void main()
     vec3 normal = normalOfTexel(index, surface);
     // Off the surface by what the distance of its texel is packed to, besides.
     vec3 point = probeHeader(push.probe).centre + surface.at + (push.offset + 5e-4 * length(surface.at)) * surface.normal;
-    Gathered got = gatherAt(point, normal, surface.normal, pixelOfTexel(texel));
+    Gathered got = gatherAt(point, normal, surface.normal, pixelOfTexel(texel), unpackGrazing(push.texels.value[index].normal));
     push.light.value[index].w = got.variance;
     if (field.surfaceDirections != 0u) push.tilts.value[index] = vec4(alongPlane(got.tilt, normal), vec2(0.0));
     push.first.value[index] = vec4(got.light, knowsTooLittle(got.ends, got.asked) || nearby > kMostNearby * got.asked ? kNotKnown : got.reach);

@@ -17,12 +17,13 @@ void main()
     SurfacePoint surface = surfacePointAt(push.probe, int(texel.z), int(texel.x), int(texel.y));
     vec3 normal = normalOfTexel(index, surface), sum = vec3(0.0);
     TangentFrame tangents = tangentFrame(normal);
+    float grazing = unpackGrazing(push.texels.value[index].normal);
     Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.rays; ++i)
     {
         uint link = push.links.word[i * texelsOfProbe() + ofProbe];
         if (!countEnd(ends, link)) continue;
-        vec3 slope = slopeOf(gatherDirection(tangents, pixelOfTexel(texel), i), normal);
+        vec3 slope = slopeOf(gatherDirection(tangents, pixelOfTexel(texel), i, grazing), normal);
         sum += luminance(broughtBy(link)) * slope;
     }
     vec4 tilt = push.tilts.value[index];

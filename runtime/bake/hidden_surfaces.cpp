@@ -27,6 +27,7 @@ struct Place
     uint32_t key;
     vec3 point; // field space
     vec3 normal;
+    float grazing; // TriangleGather::grazingOf()
 };
 
 struct Text : twin::LightFieldTwin<float>
@@ -85,12 +86,17 @@ std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& tria
                     {
                         vec2 share = random.uniform2();
                         if (share.x + share.y > 1.0f) share = 1.0f - share;
+                        const auto uv = [&](uint32_t vertex) { return scene.uvs[vertex]; };
+                        const SurfacePoint look = evaluateMaterial(scene, scene.triangleMaterial[triangle],
+                                                                   uv(corner.x) + share.x * (uv(corner.y) - uv(corner.x)) +
+                                                                       share.y * (uv(corner.z) - uv(corner.x)));
                         const vec3 on = (a + share.x * ab + share.y * ac - lit.info.origin) / lit.info.scale;
                         for (const Outside side : {Outside::front, Outside::back})
                         {
                             if (outside[triangle] != Outside::both && outside[triangle] != side) continue;
                             const vec3 normal = glm::normalize(float(side) * across), point = on + triangles.offset() * normal;
-                            if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal)) found[triangle].push_back({0, point, normal});
+                            if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal))
+                                found[triangle].push_back({0, point, normal, triangles.grazingOf(look.metallic, look.roughness)});
                         }
                     }
                 });
@@ -122,7 +128,7 @@ uint32_t lightOf(std::span<const Place> places, Text& text, const TriangleGather
     for (uint32_t i = 0; i < std::min<size_t>(places.size(), kPlacesOfKey); ++i)
     {
         const Place& place = places[i * places.size() / std::min<size_t>(places.size(), kPlacesOfKey)];
-        const auto got = triangles.gatherAt(place.point, place.normal, kRaysOfPlace, {place.key, i}, sent);
+        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
         if (!got.known) continue;
         sum += got.straight + got.bounced;
         meets = meets || got.meetsSeen;

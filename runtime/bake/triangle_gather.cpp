@@ -313,6 +313,24 @@ struct Gatherer : LightFieldTwin<float>
 
     static constexpr int kTries = 4; // for a direction above the surface
 
+    static uint packGrazing(float grazing)
+    {
+        return uint(255.0f * grazing / kMostGrazing + 0.5f) << 24;
+    }
+    /// The nearest to diffuseAlong() by least squares.
+    static float grazingOfRoughness(float roughness)
+    {
+        constexpr int kCosines = 64;
+        float sum = 0.0f, squares = 0.0f;
+        for (int i = 0; i < kCosines; ++i)
+        {
+            const float c = sqrt((float(i) + 0.5f) / float(kCosines)), by = takenAlong(c, 1.0f) - 1.0f;
+            sum += (diffuseAlong(c, roughness) - 1.0f) * by;
+            squares += by * by;
+        }
+        return std::clamp(sum / squares, 0.0f, kMostGrazing);
+    }
+
     uint nearestTint(vec3 tint) const
     {
         uint nearest = 0;
@@ -380,7 +398,7 @@ struct Gatherer : LightFieldTwin<float>
     }
 
     /// Whether some of a place's rays end at a texel, or pass through the open before a probe on their way to the sky.
-    bool meetsSeen(vec3 point, vec3 normal, uvec2 sample, std::span<const uint32_t> ends)
+    bool meetsSeen(vec3 point, vec3 normal, uvec2 sample, std::span<const uint32_t> ends, float grazing)
     {
         const TangentFrame tangents = tangentFrame(normal);
         for (uint i = 0; i < ends.size(); ++i)
@@ -388,7 +406,7 @@ struct Gatherer : LightFieldTwin<float>
             if (ends[i] < kLinkDark) return true;
             if (ends[i] != kLinkSky) continue;
             for (const float voxels : {2.0f, 6.0f})
-                if (isSeen(point + voxels * field.voxel * gatherDirection(tangents, sample, i))) return true;
+                if (isSeen(point + voxels * field.voxel * gatherDirection(tangents, sample, i, grazing))) return true;
         }
         return false;
     }
@@ -468,7 +486,13 @@ TriangleGather::TriangleGather(const ExactRays& rays, const FieldData& data, std
     : triangles(&rays), field(&data), texels(known), lights(&list), desc(wanted), gap(rayOffset(rays.scene())),
       palette(metalTints(rays.scene()))
 {
+    for (size_t i = 0; i < grazings.size(); ++i) grazings[i] = twin::Gatherer::grazingOfRoughness(float(i) / float(grazings.size() - 1));
     assert(desc.rays > 0 && desc.shadowRays <= gpu::kMostShadowRays && data.info.surfaceSize > 0);
+}
+
+float TriangleGather::grazingOf(float metallic, float roughness) const
+{
+    return (1.0f - metallic) * grazings[size_t(roughness * float(grazings.size() - 1) + 0.5f)];
 }
 
 void TriangleGather::gather(uint32_t probe, const Target& target) const
@@ -501,8 +525,10 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                             point += 5e-4f * glm::length(surface.at) * plane; // off it by what its distance is packed to
                         point += 2.0f * gap / field->info.scale * plane;
                         const vec3 normal = field->info.surfaceDirections != 0 ? surface.normal : text.unpackNormal8(own[text.slot].normal);
-                        const auto got = text.gatherAt(point, normal, plane, text.pixelOfTexel(glm::uvec3(x, y, face)));
-                        const gpu::SurfaceTexel lit = text.withLamps(own[text.slot], text.worldOf(point), plane);
+                        const float grazing = exact ? grazingOf(exact->surface.metallic, exact->surface.roughness) : 0.0f;
+                        const auto got = text.gatherAt(point, normal, plane, text.pixelOfTexel(glm::uvec3(x, y, face)), grazing);
+                        gpu::SurfaceTexel lit = text.withLamps(own[text.slot], text.worldOf(point), plane);
+                        lit.normal |= twin::Gatherer::packGrazing(grazing);
                         target.sending[text.slot] = exact ? text.sending(lit, *exact) : lit;
                         target.light[text.slot].w = got.variance;
                         target.reflected[text.slot] = text.packSharedExponent(text.brought / std::max(got.ends.all, 1.0f));
@@ -529,7 +555,8 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
         const vec3 point = (exact->position - field->info.origin) / field->info.scale + 2.0f * gap / field->info.scale * exact->normal;
         const vec3 normal = field->info.surfaceDirections != 0 ? surface.normal : exact->shading;
         text.brought = vec3(0.0f);
-        const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at));
+        const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at),
+                                       grazingOf(exact->surface.metallic, exact->surface.roughness));
         if (text.knowsTooLittle(got.ends, got.asked)) continue;
         found[i] = {got.light, text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f), got.variance, got.reach, true,
                     true};
@@ -537,20 +564,20 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
     return found;
 }
 
-TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, uint32_t rays, glm::uvec2 sample,
+TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample,
                                                std::span<const uint32_t> sent) const
 {
     std::vector<uint32_t> links(rays);
     Desc fewer = desc;
     fewer.rays = rays;
     twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, links);
-    const auto got = text.gatherAt(point, normal, normal, sample);
+    const auto got = text.gatherAt(point, normal, normal, sample, grazing);
     return {got.light,
             text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
             got.variance,
             got.reach,
             !text.knowsTooLittle(got.ends, got.asked),
-            text.meetsSeen(point, normal, sample, links)};
+            text.meetsSeen(point, normal, sample, links, grazing)};
 }
 
 TriangleGather::Cells TriangleGather::gatherCells() const
@@ -572,7 +599,7 @@ TriangleGather::Cells TriangleGather::gatherCells() const
                         if (facing == 0) found.places[cell] = text.openPlace(at);
                         if (found.places[cell] == 0) return;
                         const vec3 axis = text.faceDirection(facing, vec3(0.0f, 0.0f, 1.0f));
-                        const auto got = text.gatherAt(text.cellPlace(at, found.places[cell]), axis, axis, glm::uvec2(cell, facing));
+                        const auto got = text.gatherAt(text.cellPlace(at, found.places[cell]), axis, axis, glm::uvec2(cell, facing), 0.0f);
                         if (!text.knowsTooLittle(got.ends, float(desc.rays)))
                             found.straight[index] = got.light + text.brought / std::max(got.ends.all, 1.0f);
                     }

@@ -74,9 +74,13 @@ public:
 
     /// At a place on a surface that no texel need show.
     /// @param point   field space, off it by gap()
-    /// @param normal  unit, on the side that is lit
+    /// @param normal   unit, on the side that is lit
+    /// @param grazing  of its surface, see grazingOf()
     /// @param rays    at most Desc's
-    Point gatherAt(vec3 point, vec3 normal, uint32_t rays, glm::uvec2 sample, std::span<const uint32_t> sent) const;
+    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, std::span<const uint32_t> sent) const;
+    /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in
+    /// gathered_rays.h; 0 of metals.
+    float grazingOf(float metallic, float roughness) const;
     float offset() const { return 2.0f * gap / field->info.scale; } // field units that points are off their surface
     const Scene& scene() const { return triangles->scene(); }
 
@@ -88,6 +92,7 @@ private:
     Desc desc;
     float gap; // metres that rays start off their surface
     std::vector<vec3> palette;
+    std::array<float, 256> grazings{}; // by roughness
 };
 
 } // namespace sconce

@@ -16,7 +16,7 @@ const uint kBakeDepthBinding = 1u;
 struct SurfaceTexel
 {
     uint albedo; // packRootOfColor
-    uint normal; // shading normal, 8 + 8 bits, and kSurfaceKnown; 0: sky
+    uint normal; // shading normal, 8 + 8 bits, kSurfaceKnown, and 8 of unpackGrazing(); 0: sky
     uint sent;   // radiance that the surface sends of lights whose direct light is the host's, RGB9E5
 };
 SCONCE_CHECK_SIZE(SurfaceTexel, 12);

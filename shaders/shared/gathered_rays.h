@@ -8,10 +8,38 @@ SCONCE_FN vec2 pairOfRay(uvec2 pixel, uint i, uint stream)
     return randomPair(pixel, i & ((1u << kSampleBits) - 1u), stream, 2654435769u * (i >> kSampleBits));
 }
 
-/// Weighted by the cosine about the tangents' normal.
-SCONCE_FN vec3 gatherDirection(SCONCE_IN(TangentFrame) tangents, uvec2 pixel, uint i)
+// What a diffuse lobe under a smooth coat takes of light along a cosine c, over its mean: near 1 + grazing (1/21 - (1 - c)^5), whose mean over the
+// hemisphere, weighted by the cosine, is 1. A fit of diffuseAlong(), off by 0.014 in the mean square where it is worst (roughness 0.3).
+SCONCE_CONST real kMostGrazing = real(1.05);
+SCONCE_PURE real takenAlong(real c, real grazing) { return real(1.0) + grazing * (real(1.0) / real(21.0) - schlick(c)); }
+
+/// A texel's grazing, from 8 bits of its SurfaceTexel::normal.
+SCONCE_PURE real unpackGrazing(uint normal) { return real(normal >> 24) * (kMostGrazing / real(255.0)); }
+
+/// The cosine below which a share of all light is taken that comes evenly from the hemisphere: its share is found by Newton's steps.
+SCONCE_PURE real cosineTaken(real share, real grazing)
 {
-    return normalize(toWorld(tangents, sampleCosine(pairOfRay(pixel, i, kGatherStream))));
+    real c = sqrt(share);
+    for (int step = 0; step < 4; ++step)
+    {
+        real away = real(1.0) - c;
+        real sixth = fifthPower(away) * away;
+        real below = c * c + grazing * ((c * c - real(1.0)) / real(21.0) + sixth * (real(1.0) / real(3.0) - away * (real(2.0) / real(7.0))));
+        c = between0And1(c - (below - share) / max(real(2.0) * c * takenAlong(c, grazing), real(0.02)));
+    }
+    return c;
+}
+
+/// Weighted by the cosine about the tangents' normal, and by what is taken of light along it.
+SCONCE_FN vec3 gatherDirection(SCONCE_IN(TangentFrame) tangents, uvec2 pixel, uint i, real grazing)
+{
+    vec2 lots = pairOfRay(pixel, i, kGatherStream);
+    if (grazing > real(0.0))
+    {
+        real c = cosineTaken(real(1.0) - lots.x, grazing);
+        lots.x = real(1.0) - c * c;
+    }
+    return normalize(toWorld(tangents, sampleCosine(lots)));
 }
 /// That a texel's random numbers are drawn by.
 SCONCE_FN uvec2 pixelOfTexel(uvec3 at) { return uvec2(at.x + field.surfaceSize * at.z, at.y); }

@@ -16,10 +16,10 @@ struct EmitterSample
     vec3 toLight; // unit
     vec3 irradiance;
     real distance;
-    real cosine; // at the surface; 0 behind its plane
+    real cosine; // at the surface, times what is taken of light along it; 0 behind its plane
 };
 
-SCONCE_FN EmitterSample emitterSampleAt(uint i, vec3 point, vec3 normal, vec3 plane)
+SCONCE_FN EmitterSample emitterSampleAt(uint i, vec3 point, vec3 normal, vec3 plane, real grazing)
 {
     EmitterSample s;
     vec3 away = vec3(lights[i].position) - point;
@@ -29,6 +29,7 @@ SCONCE_FN EmitterSample emitterSampleAt(uint i, vec3 point, vec3 normal, vec3 pl
     s.irradiance = vec3(lights[i].intensity) * patchAttenuation(-dot(s.toLight, vec3(lights[i].direction)), d2, real(lights[i].area), discOf(real(lights[i].area)),
                                                                      lights[i].innerCone > 0.0f);
     s.cosine = dot(plane, s.toLight) > real(0.0) && !isNearPatch(d2, real(lights[i].area)) ? max(dot(normal, s.toLight), real(0.0)) : real(0.0);
+    s.cosine *= takenAlong(s.cosine, grazing);
     return s;
 }
 
@@ -45,14 +46,14 @@ struct Gathered
 
 /// Adds the mean over the hemisphere of the radiance that comes straight from emitters: shadow rays to samples drawn by how much they would give
 /// unshadowed (resampled importance sampling, Talbot et al. 2005), systematically along the list.
-SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, vec3 plane, uvec2 pixel)
+SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, vec3 plane, uvec2 pixel, real grazing)
 {
     uint begin = lightsHeader.deltaCount;
     uint end = begin + lightsHeader.emitterCount;
     real total = real(0.0);
     for (uint i = begin; i < end; ++i)
     {
-        EmitterSample s = emitterSampleAt(i, point, normal, plane);
+        EmitterSample s = emitterSampleAt(i, point, normal, plane, grazing);
         total += s.cosine * luminance(s.irradiance);
     }
     if (!(total > real(0.0))) return;
@@ -63,7 +64,7 @@ SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, v
     real passed = real(0.0);
     for (uint i = begin; i < end; ++i)
     {
-        EmitterSample s = emitterSampleAt(i, point, normal, plane);
+        EmitterSample s = emitterSampleAt(i, point, normal, plane, grazing);
         passed += s.cosine * luminance(s.irradiance);
         for (; passed > next && count < shadowRays(); next += each) drawn[count++] = i;
     }
@@ -75,7 +76,7 @@ SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, v
     for (uint k = 0u; k < count; ++k)
     {
         uint i = drawn[k];
-        EmitterSample s = emitterSampleAt(i, point, normal, plane);
+        EmitterSample s = emitterSampleAt(i, point, normal, plane, grazing);
         if (i != before) reached = emitterReaches(point, s.toLight, s.distance, plane);
         before = i;
         if (!reached) continue;
@@ -90,8 +91,9 @@ SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, v
 
 /// What a texel gets straight from emitters and sky, and where its other light comes from: of rays that leave the scene the sky's light, of the others
 /// the texel where each ended, kept by keepLink(i, link), so that bounces need no ray.
-/// @param plane  unit normal of the surface; `normal`: that light is gathered about
-SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel)
+/// @param plane    unit normal of the surface; `normal`: that light is gathered about
+/// @param grazing  of the surface, see takenAlong(); 0: light counts alike from all sides
+SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel, real grazing)
 {
     TangentFrame tangents = tangentFrame(normal);
     vec3 slopes = vec3(real(0.0));
@@ -106,7 +108,7 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel)
     got.asked = real(0.0);
     for (uint i = 0u; i < gatherRays(); ++i)
     {
-        vec3 direction = gatherDirection(tangents, pixel, i);
+        vec3 direction = gatherDirection(tangents, pixel, i, grazing);
         uint link = kLinkDark; // below the surface
         got.asked += real(1.0);
         if (dot(direction, plane) > real(0.0))
@@ -135,7 +137,7 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel)
     if (luminousSky > real(0.0)) got.variance += luminousSky * luminousSky * varianceOfShare(sky, got.ends.all);
     got.tilt = slopes / rays;
     got.reach = real(gatherRays()) / max(nearness, real(1e-6));
-    if (lightsHeader.emitterCount > 0u) addEmitters(got, point, normal, plane, pixel);
+    if (lightsHeader.emitterCount > 0u) addEmitters(got, point, normal, plane, pixel, grazing);
     got.light = vec3(field.sky) * (sky / rays) + got.emitters;
     return got;
 }

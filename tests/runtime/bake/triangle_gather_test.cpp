@@ -1,8 +1,10 @@
 // Light gathered by rays to the scene's triangles, against closed forms and against itself.
 #include "runtime/bake/triangle_gather.h"
 
+#include <cmath>
 #include <optional>
 
+#include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
 #include "runtime/bake/bake.h"
@@ -117,6 +119,48 @@ TEST_F(TriangleGathering, AMirrorThrowsLightOn)
     }
     EXPECT_GT(truth, 1.4 * direct) << "the mirror has a say";
     EXPECT_NEAR(sum / truth, 1.0, 0.04); // the black wall itself reflects 4 %, which the mirror sends back
+}
+
+// A smooth dielectric's coat reflects light along its plane, so that its diffuse lobe takes less of it, and more of what falls steeply.
+TEST_F(TriangleGathering, SmoothDielectricsTakeLessOfGrazingLight)
+{
+    constexpr float kHalf = 0.3f, kHeight = 1.0f;
+    constexpr int kSteps = 16; // of the lamp, along each side
+    for (const float roughness : {0.05f, 0.3f, 1.0f})
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        mesh.box(vec3(-8.0f, -0.2f, -8.0f), vec3(8.0f, 0.0f, 8.0f), mesh.material("coat", vec3(0.0f), roughness));
+        mesh.quad({-kHalf, kHeight, -kHalf}, {kHalf, kHeight, -kHalf}, {kHalf, kHeight, kHalf}, {-kHalf, kHeight, kHalf},
+                  mesh.emitter("lamp", vec3(10.0f)));
+        struct
+        {
+            double got = 0.0, truth = 0.0, even = 0.0;
+        } below, away;
+        for (const Texel& texel : texelsOf(bake(scene, {vec3(0.4f, 0.7f, 0.5f)}, 0), 0))
+        {
+            const double far = std::hypot(texel.position.x, texel.position.z);
+            if (texel.normal.y < 0.99f || (far > 0.5 && far < 2.5) || far > 5.0) continue;
+            auto& where = far < 1.0 ? below : away;
+            where.got += texel.light.g;
+            for (int i = 0; i < kSteps * kSteps; ++i)
+            {
+                const double x = kHalf * (2.0 * (i % kSteps + 0.5) / kSteps - 1.0) - texel.position.x;
+                const double z = kHalf * (2.0 * (i / kSteps + 0.5) / kSteps - 1.0) - texel.position.z;
+                const double d2 = x * x + z * z + kHeight * kHeight, cosine = kHeight / std::sqrt(d2);
+                const double given = 10.0 * cosine * cosine / d2 * 4.0 * kHalf * kHalf / (kSteps * kSteps) / glm::pi<double>();
+                where.even += given;
+                where.truth += given * Pure<double>::diffuseAlong(cosine, double(roughness));
+            }
+        }
+        ASSERT_GT(away.truth, 0.0);
+        EXPECT_NEAR(below.got / below.truth, 1.0, 0.02) << "roughness " << roughness;
+        EXPECT_NEAR(away.got / away.truth, 1.0, 0.035) << "roughness " << roughness;
+        if (roughness < 0.1f)
+        {
+            EXPECT_LT(away.truth, 0.9 * away.even) << "the coat has a say";
+        }
+    }
 }
 
 // Below a small plate over a mirror of gold the white sky is golden: of each colour by Schlick's mean over the hemisphere, c + (1 - c)
