@@ -14,8 +14,9 @@ namespace sconce::twin
 using namespace glm; // the shared text calls GLSL's functions by their plain names
 
 /// The shaders' own text, run on the CPU in float or double: the oracle of the GPU, and what tests and tools trace with.
-/// Refers to the field: keep that alive. Safe from many threads.
-template <class Real> struct LightFieldTwin
+/// Refers to the field: keep that alive. Safe from many threads, unless it counts.
+/// @tparam kCounts  what is read of the field is counted in `read`
+template <class Real, bool kCounts = false> struct LightFieldTwin
 {
     using real = Real;
     using uint = std::uint32_t;
@@ -50,9 +51,16 @@ template <class Real> struct LightFieldTwin
 
 #include "shaders/shared/pure_text.h"
 
+    /// Of 4 bytes, but for an octree's texel of 8 and a header of 16.
+    struct Reads
+    {
+        size_t headers = 0, distance = 0, surface = 0, octree = 0;
+    };
+
     const gpu::LightFieldInfo& field;
     TraceQuality quality;
     const FieldData& source;
+    mutable Reads read;
 
     bool readsFarBounds() const
     {
@@ -68,10 +76,12 @@ template <class Real> struct LightFieldTwin
     }
     const ProbeHeader& probeHeader(uint probe) const
     {
+        if constexpr (kCounts) ++read.headers;
         return source.probes[probe];
     }
     uint distanceWord(uint index) const
     {
+        if constexpr (kCounts) ++read.distance;
         return source.distance[index];
     }
     uint radianceWord(uint index) const
@@ -97,10 +107,12 @@ template <class Real> struct LightFieldTwin
     }
     uint surfaceWord(uint index) const
     {
+        if constexpr (kCounts) ++read.surface;
         return source.surfaceLight[index];
     }
     uvec4 octreeTexel(ivec3 p) const
     {
+        if constexpr (kCounts) ++read.octree;
         const glm::uvec3 size = source.octree.textureSize();
         const size_t at = 4 * (size_t(p.x) + size.x * (size_t(p.y) + size_t(size.y) * p.z));
         const uint16_t* texel = source.octree.texels.data() + at;

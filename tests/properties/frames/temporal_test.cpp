@@ -1,6 +1,5 @@
 // The filter over time: still pictures converge, moving ones neither flicker nor ghost, a cut forgets.
 #include <cmath>
-#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -125,71 +124,6 @@ TEST_F(TemporalTest, AfterACutNothingIsLeftOfTheFramesBefore)
     const auto a = cut->render(scene.cameras.front(), 7), b = fresh->render(scene.cameras.front(), 7);
     ASSERT_TRUE(a && b);
     EXPECT_EQ(a->beauty, b->beauty);
-}
-
-/// Diffuse light read at surfaces, of pixels and of the means of 4 x 4 finer ones.
-class SurfaceFlicker : public FrameTest
-{
-protected:
-    static constexpr uint32_t kFiner = 4;
-
-    /// The mean of a pixel's finer ones; none where they see more than one surface.
-    static std::optional<vec3> meanOfFiner(const RenderedFrame& fine, uint32_t x, uint32_t y)
-    {
-        vec3 sum(0.0f);
-        const size_t first = size_t(y) * kFiner * fine.width + size_t(x) * kFiner;
-        for (uint32_t i = 0; i < kFiner * kFiner; ++i)
-        {
-            const size_t at = first + size_t(i / kFiner) * fine.width + i % kFiner;
-            if (glm::dot(fine.normal[at], fine.normal[first]) < 0.9999f || fine.albedo[at] != fine.albedo[first]) return std::nullopt;
-            sum += fine.diffuseIndirect[at] / float(kFiner * kFiner);
-        }
-        return sum;
-    }
-};
-
-// As the camera turns slowly, what is left of dithered look-ups must not crawl: no filter over time hides it.
-TEST_F(SurfaceFlicker, ATurningCameraShowsTheChangeOfTheSceneAlone)
-{
-    const Scene scene = *makeBuiltinScene("cornell-glossy");
-    const std::vector<vec3> probes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f}, {-0.75f, 1.0f, -0.8f}};
-    const auto baked = bakeField(scene, probes, 128, 4, 52);
-    ASSERT_TRUE(baked) << baked.error().message;
-    const auto device = DeviceScene::create(gpu(), scene, baked->info);
-    const auto field = makeLightField(gpu(), *baked);
-    ASSERT_TRUE(device && field);
-    RenderSettings settings = settingsOf(kSide);
-    settings.effects.temporal = settings.effects.glossy = settings.effects.mirror = settings.effects.rough = false;
-    RenderSettings finer = settings;
-    finer.width = finer.height = kFiner * kSide;
-    const auto drawn = SceneRenderer::create(gpu(), *device, *field, settings), fine = SceneRenderer::create(gpu(), *device, *field, finer);
-    ASSERT_TRUE(drawn && fine);
-    double flicker = 0.0, own = 0.0;
-    size_t compared = 0;
-    std::optional<RenderedFrame> before, fineBefore;
-    for (uint32_t i = 0; i < 12; ++i)
-    {
-        Camera camera = scene.cameras.front();
-        const vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
-        camera.forward = glm::normalize(camera.forward + 0.2f * std::tan(0.5f * camera.verticalFov) / float(kSide) * float(i) * right);
-        auto now = (*drawn)->render(camera, i), fineNow = (*fine)->render(camera, i);
-        ASSERT_TRUE(now && fineNow);
-        for (uint32_t p = 0; before && p < kSide * kSide; ++p)
-        {
-            const auto mean = meanOfFiner(*fineNow, p % kSide, p / kSide), meanBefore = meanOfFiner(*fineBefore, p % kSide, p / kSide);
-            if (!mean || !meanBefore) continue;
-            const vec3 change = glm::abs(now->diffuseIndirect[p] - before->diffuseIndirect[p]), truth = glm::abs(*mean - *meanBefore);
-            flicker += change.x + change.y + change.z;
-            own += truth.x + truth.y + truth.z;
-            ++compared;
-        }
-        before = std::move(*now);
-        fineBefore = std::move(*fineNow);
-    }
-    ASSERT_GT(compared, 11u * kSide * kSide / 2u);
-    expectAtMost(
-        "diffuse light at surfaces, camera turning by a tenth of a pixel a frame: change from frame to frame, times that of finer pixels",
-        compared, flicker / own, 1.05);
 }
 
 } // namespace
