@@ -1,8 +1,10 @@
 #include "runtime/bake/hidden_surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -18,6 +20,7 @@ constexpr double kPointsOfVoxel = 8.0; // of a surface that is as large as a vox
 constexpr double kMostPoints = 4e6;    // voxels are larger where there were more
 constexpr uint32_t kPlacesOfKey = 4;   // that are gathered at
 constexpr uint32_t kRaysOfPlace = 16;
+constexpr float kLeastOpen = 1e-3f;       // weight of a place
 constexpr size_t kMostKeysOfProbe = 1024; // voxels are larger where there were more
 constexpr double kMostKeys = 2147483648.0;
 constexpr uint64_t kHiddenStream = 19; // of random numbers
@@ -119,38 +122,58 @@ std::vector<size_t> sortByKey(std::vector<Place>& places, const FieldData& lit, 
     return first;
 }
 
-/// Mean light at some places of one key; 0: none arrives at any, or what sees them no probe sees either: the far side of an outer wall.
-uint32_t lightOf(std::span<const Place> places, Text& text, const TriangleGather& triangles, std::span<const uint32_t> sent)
+/// Mean light at some places of one key, by how open they are, since what lies between a floor and the ground that goes on below it nobody
+/// sees; 0 where what sees them no probe sees either, unless they are enclosed: the far side of an outer wall.
+/// @param side  of its voxel, field units
+uint32_t lightOf(std::span<const Place> places, float side, Text& text, const TriangleGather& triangles, std::span<const uint32_t> sent)
 {
     vec3 sum(0.0f);
-    uint32_t known = 0;
-    bool meets = false;
+    float weights = 0.0f;
+    bool meets = false, enclosed = true;
     for (uint32_t i = 0; i < std::min<size_t>(places.size(), kPlacesOfKey); ++i)
     {
         const Place& place = places[i * places.size() / std::min<size_t>(places.size(), kPlacesOfKey)];
         const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
         if (!got.known) continue;
-        sum += got.straight + got.bounced;
+        const float weight = std::clamp(got.reach / side, kLeastOpen, 1.0f);
+        sum += weight * (got.straight + got.bounced);
+        weights += weight;
         meets = meets || got.meetsSeen;
-        ++known;
+        enclosed = enclosed && got.enclosed;
     }
-    return meets && sum != vec3(0.0f) ? text.packKnownLight(sum / float(known)) : 0;
+    return weights > 0.0f && (meets || enclosed) ? text.packKnownLight(sum / weights) : 0;
 }
 
-/// The table, of few slots in which every key is found.
+/// Whether a place would be lit by what is known beside hidden surfaces: that of the open, which may be beyond a wall.
+bool isLitWithout(const FieldData& lit, const Place& place, float offset)
+{
+    Text text(lit);
+    const vec3 on = place.point - offset * place.normal;
+    int reads = 0;
+    return Text::luminance(text.surfaceLightAt(on, place.normal, place.normal, on + 0.5f * lit.info.voxel * place.normal, reads).light) >
+           0.0f;
+}
+
+/// The table, of few slots in which every key is found. A key goes before those that are nearer to where their search begins (Celis 1986,
+/// "Robin Hood Hashing"): in the order that they come they need twice the slots.
 std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const uint32_t> light)
 {
-    for (size_t slots = keys.size() + keys.size() / 4 + 1;; slots += slots / 8 + 1)
+    for (size_t slots = keys.size() + keys.size() / 2 + 1;; slots += slots / 8 + 1)
     {
         std::vector<uint32_t> table(2 * slots);
         const auto put = [&](size_t i)
         {
-            for (size_t turn = 0; turn < size_t(gpu::kHiddenTries); ++turn)
+            std::array<uint32_t, 2> entry{keys[i], light[i]};
+            size_t at = Text::hiddenSlot(entry[0], uint32_t(slots));
+            for (size_t turn = 0; turn < size_t(gpu::kHiddenTries); ++turn, at = (at + 1) % slots)
             {
-                uint32_t* const slot = &table[2 * ((Text::hiddenSlot(keys[i], uint32_t(slots)) + turn) % slots)];
-                if (slot[0] != 0) continue;
-                slot[0] = keys[i], slot[1] = light[i];
-                return true;
+                uint32_t* const slot = &table[2 * at];
+                const bool empty = slot[0] == 0;
+                const size_t turnThere = empty ? 0 : (at + slots - Text::hiddenSlot(slot[0], uint32_t(slots))) % slots;
+                if (!empty && turnThere >= turn) continue;
+                std::swap_ranges(entry.begin(), entry.end(), slot);
+                if (empty) return true;
+                turn = turnThere;
             }
             return false;
         };
@@ -177,23 +200,26 @@ void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::s
         ++lit.info.hidden;
         first = sortByKey(places, lit, triangles.offset());
     }
+    const float wide = lit.info.voxel * float(1u << lit.info.hidden);
     std::vector<uint32_t> found(first.size() - 1);
     parallelFor(found.size(),
                 [&](size_t i)
                 {
                     Text text(lit);
-                    found[i] = lightOf(std::span(places).subspan(first[i], first[i + 1] - first[i]), text, triangles, sent);
+                    found[i] = lightOf(std::span(places).subspan(first[i], first[i + 1] - first[i]), wide, text, triangles, sent);
+                });
+    const uint32_t voxels = std::exchange(lit.info.hidden, 0u); // that look-ups do without
+    parallelFor(found.size(),
+                [&](size_t i)
+                {
+                    if (found[i] == Text::kBlackWord && !isLitWithout(lit, places[first[i]], triangles.offset())) found[i] = 0;
                 });
     std::vector<uint32_t> keys, light;
     for (size_t i = 0; i < found.size(); ++i)
         if (found[i] != 0) keys.push_back(places[first[i]].key), light.push_back(found[i]);
-    if (keys.empty())
-    {
-        lit.info.hidden = 0;
-        return;
-    }
+    if (keys.empty()) return;
     const std::vector<uint32_t> table = tableOf(keys, light);
-    lit.info.hidden |= uint32_t(table.size() / 2) << gpu::kHiddenShiftBits;
+    lit.info.hidden = voxels | uint32_t(table.size() / 2) << gpu::kHiddenShiftBits;
     lit.surfaceLight.insert(lit.surfaceLight.end(), table.begin(), table.end());
 }
 

@@ -558,8 +558,9 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
         const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at),
                                        grazingOf(exact->surface.metallic, exact->surface.roughness));
         if (text.knowsTooLittle(got.ends, got.asked)) continue;
-        found[i] = {got.light, text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f), got.variance, got.reach, true,
-                    true};
+        found[i] = {
+            got.light, text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f), got.variance, got.reach, true, true,
+            false};
     }
     return found;
 }
@@ -577,7 +578,8 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
             got.variance,
             got.reach,
             !text.knowsTooLittle(got.ends, got.asked),
-            text.meetsSeen(point, normal, sample, links, grazing)};
+            text.meetsSeen(point, normal, sample, links, grazing),
+            std::ranges::find(links, gpu::kLinkSky) == links.end()};
 }
 
 TriangleGather::Cells TriangleGather::gatherCells() const

@@ -65,6 +65,7 @@ public:
         float reach = 0.0f;                 // harmonic mean of the rays' lengths, field units
         bool known = false;                 // enough of its rays found something
         bool meetsSeen = false;             // some of them a place that a probe sees
+        bool enclosed = false;              // none of them the sky
     };
     /// At what the 2^kFineLog squared finer texels of a texel see.
     /// @param texel  x, y, face

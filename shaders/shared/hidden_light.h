@@ -51,25 +51,36 @@ SCONCE_FN uint hiddenWord(uint key)
     return 0u;
 }
 
-/// Light at a surface point from the eight voxels about it. Cost: about 24 reads.
+/// Light at a surface point from the voxels through which its plane goes in the four columns about it, along the axis that it faces: other floors
+/// above and below have light of their own. Cost: about 14 reads.
 /// @return  rgb: mean of the arriving radiance, weighted by the cosine; a: 0 where its own voxel has none
 SCONCE_FN vec4 hiddenLightAt(vec3 point, vec3 normal)
 {
     vec3 place = hiddenPlace(point);
     int facing = dominantFace(normal);
-    ivec3 own = ivec3(int(floor(place.x)), int(floor(place.y)), int(floor(place.z)));
+    int axis = facing >> 1;
+    int u = axis == 0 ? 1 : 0;
+    int v = axis == 2 ? 1 : 2;
+    ivec3 voxel = ivec3(int(floor(place.x)), int(floor(place.y)), int(floor(place.z)));
     vec4 sum = vec4(real(0.0));
-    if (hiddenWord(hiddenKey(own, facing)) == 0u) return sum;
-    vec3 at = place - vec3(real(0.5));
-    ivec3 low = ivec3(int(floor(at.x)), int(floor(at.y)), int(floor(at.z)));
-    vec3 f = at - vec3(real(low.x), real(low.y), real(low.z));
-    for (int corner = 0; corner < 8; ++corner)
+    uint own = hiddenWord(hiddenKey(voxel, facing));
+    if (own == 0u) return sum;
+    real lowU = floor(place[u] - real(0.5));
+    real lowV = floor(place[v] - real(0.5));
+    real fu = place[u] - real(0.5) - lowU;
+    real fv = place[v] - real(0.5) - lowV;
+    for (int column = 0; column < 4; ++column)
     {
-        ivec3 to = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
-        uint word = hiddenWord(hiddenKey(ivec3(low.x + to.x, low.y + to.y, low.z + to.z), facing));
+        real du = real(column & 1);
+        real dv = real(column >> 1);
+        voxel[u] = int(lowU + du);
+        voxel[v] = int(lowV + dv);
+        voxel[axis] = int(floor(place[axis] - (normal[u] * (du - fu) + normal[v] * (dv - fv)) / normal[axis]));
+        uint word = hiddenWord(hiddenKey(voxel, facing));
         if (word == 0u) continue;
-        real weight = (to.x != 0 ? f.x : real(1.0) - f.x) * (to.y != 0 ? f.y : real(1.0) - f.y) * (to.z != 0 ? f.z : real(1.0) - f.z) + real(1e-3);
+        real weight = (du > real(0.0) ? fu : real(1.0) - fu) * (dv > real(0.0) ? fv : real(1.0) - fv) + real(1e-3);
         sum += weight * vec4(unpackSharedExponent(word), real(1.0));
     }
+    if (!(sum.w > real(0.0))) return vec4(unpackSharedExponent(own), real(1.0));
     return vec4(vec3(sum.x, sum.y, sum.z) / sum.w, real(1.0));
 }
