@@ -147,7 +147,7 @@ double qualityOfCorners(const Visibility& visibility, const ProbeGrid& grid, std
 Result<ProbeSet> placeGrid(const Scene& scene, const Visibility& visibility, const FreeSpace& space, const PlaceSettings& settings,
                            PlaceReport& report, const Progress& progress)
 {
-    const std::vector<ProbeGrid> grids = gridsFor(space, settings);
+    const std::vector<ProbeGrid> grids = settings.pose ? std::vector{*settings.pose} : gridsFor(space, settings);
     const ProbeGrid* chosen = &grids.front();
     if (grids.size() > 1)
     {
@@ -385,15 +385,33 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     return explained(visibility, refining, final, report);
 }
 
+Status soundInput(const Scene& scene, const PlaceSettings& settings)
+{
+    if (const std::string fault = faultOf(settings); !fault.empty())
+        return Error{ErrorCode::badArgument, fmt::format("Placement: {}", fault)};
+    if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
+    return success();
+}
+
 } // namespace
+
+Result<std::vector<ProbeGrid>> gridPoses(const Scene& scene, const PlaceSettings& settings, const Progress& progress)
+{
+    if (const Status sound = soundInput(scene, settings); !sound) return sound.error();
+    const Result<Visibility> visibility = Visibility::build(scene);
+    if (!visibility) return visibility.error();
+    const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress, settings.open);
+    if (!space) return space.error();
+    PlaceSettings fitted = settings;
+    fitted.fitGrid = true;
+    return gridsFor(*space, fitted);
+}
 
 Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, PlaceReport& report, const Progress& progress)
 {
     const auto started = std::chrono::steady_clock::now();
     report = {};
-    if (const std::string fault = faultOf(settings); !fault.empty())
-        return Error{ErrorCode::badArgument, fmt::format("Placement: {}", fault)};
-    if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
+    if (const Status sound = soundInput(scene, settings); !sound) return sound.error();
     const Result<Visibility> visibility = Visibility::build(scene);
     if (!visibility) return visibility.error();
     const Result<FreeSpace> space = findFreeSpace(scene, *visibility, settings.inside, settings.voxels, progress, settings.open);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "placement/optimise.h"
 #include "placement/picture.h"
 #include "placement/probe_set.h"
+#include "scene/probe_grid.h"
 #include "scene/scene.h"
 
 namespace sconce
@@ -30,6 +32,7 @@ struct PlaceSettings
     Method method = Method(knobs::method.place());
     glm::ivec3 grid{0};                     // grid: points along each axis, product 1..65,535; 0: chosen from `count`
     bool fitGrid = knobs::fitGrid.value;    // grid: of several shapes and poses that whose cells' corners see best
+    std::optional<ProbeGrid> pose;          // grid: this one, of gridPoses()
     bool powersOfTwo = false;               // grid: along each axis, of the product nearest to `count`
     uint32_t count = knobs::count.value;    // probes; 0: the fewest that reach `coverage`; a grid takes 64
     float coverage = knobs::coverage.value; // share of the surface points that rays hit; when count is 0, grid apart
@@ -73,5 +76,9 @@ struct PlaceReport
 /// Errors: badArgument names the setting; badInput when the scene has no triangles or no free space; cancelled.
 /// Cost: sdf 5 to 60 s on two cores for 0.1 to 2 million triangles.
 Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, PlaceReport& report, const Progress& progress = {});
+
+/// The uniform grids that `fitGrid` chooses among: some shapes of about as many probes, at some distances from the bounds of the reachable space.
+/// For whoever knows a better judge than what their cells' corners see. Errors: as placeProbes().
+Result<std::vector<ProbeGrid>> gridPoses(const Scene& scene, const PlaceSettings& settings, const Progress& progress = {});
 
 } // namespace sconce

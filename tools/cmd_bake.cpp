@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/opponents/baselines.h"
 #include "placement/probe_set.h"
 #include "runtime/bake/bake.h"
 #include "runtime/field/light_field_file.h"
@@ -50,8 +49,6 @@ int runBake(const BakeOptions& options, const Context& context)
     }
     // The field must say that it is a grid: its probes are then found by a formula, and the bake moves none of them.
     settings.grid = set->grid;
-    if (settings.grid && settings.chart == gpu::kChartOctahedral)
-        settings.bounceShader = gridBouncePass();                                 // what reads such maps is an opponent
     const RenderSettings frame = *quality ? (*quality)->frame : RenderSettings(); // that the field is for
     // By the frames that the field is for: from which roughness on they trace no rays says what the field must keep.
     const Result<EffectPlan> plan = planEffects(checkScene(*scene, frame.raysBelow), options.effects);
@@ -63,6 +60,7 @@ int runBake(const BakeOptions& options, const Context& context)
     // The bake knows positions alone: how a probe came to be where it is makes no difference to its light.
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : set->probes) positions.push_back(probe.position);
+    BakeReport report;
     std::optional<TriangleRays> rays;
     if (options.gather == knobs::kGathers[0] && settings.surfaceTexels > 0)
     {
@@ -70,7 +68,14 @@ int runBake(const BakeOptions& options, const Context& context)
         if (!built) return fail(built.error());
         settings.rays = &rays.emplace(std::move(*built));
     }
-    BakeReport report;
+    std::optional<FieldData> light;
+    if (settings.chart == gpu::kChartOctahedral && settings.surfaceTexels > 0)
+    {
+        Result<FieldData> found =
+            bakeLightField(device->host(), *scene, positions, lendingBake(settings), consoleProgress(context), report);
+        if (!found) return fail(found.error());
+        settings.light = &light.emplace(std::move(*found));
+    }
     Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
     if (!field) return fail(field.error());
     if (report.moved > 0 && !context.quiet)

@@ -11,7 +11,6 @@
 #include "bench/opponents/baseline_cpu.h"
 #include "bench/opponents/wang_field.h"
 #include "runtime/field/quality.h"
-#include "spirv/bake_bounce_2021.h"
 #include "spirv/gather_light_2017.h"
 #include "spirv/gather_light_2021.h"
 #include "spirv/trace_glossy_b0.h"
@@ -151,11 +150,6 @@ Spirv traceRaysPass(Baseline baseline)
 LightShaders lightPasses(Baseline baseline)
 {
     return entryOf(baseline).light;
-}
-
-Spirv gridBouncePass()
-{
-    return bake_bounce_2021;
 }
 
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits)

@@ -49,9 +49,6 @@ Spirv traceRaysPass(Baseline baseline);
 /// by those of Majercik et al. 2021; what has lists is lit by them, as ours is.
 LightShaders lightPasses(Baseline baseline);
 
-/// The bounces of a bake over a grid, for BakeSettings: by its eight corners, too, with b0plus's weights.
-Spirv gridBouncePass();
-
 /// The same text on the CPU, on all cores. The field is one of baselineField(). Misuse: spans of different length assert.
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits);
 

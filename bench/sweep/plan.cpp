@@ -110,6 +110,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         PointSettings point = ours;
         point.method = opponent.name;
         point.placement = opponent.placement;
+        point.lightResolution = ours.resolution;
         if (opponent.faces == 1) point.resolution = octahedralOfAsMuch(ours.resolution);
         if (opponent.faces == 2) point.resolution = 2 * std::bit_ceil(ours.resolution); // wang's chain halves its maps to the last
         theirs.push_back(point);

@@ -16,14 +16,33 @@ bool wantsPowersOfTwo(const PointSettings& settings)
     return settings.opponent() == Baseline::b0;
 }
 
+/// Of the grids the one that its judge finds least wrong.
+Result<ProbeGrid> bestGrid(const Scene& scene, const PlaceSettings& place, const GridJudge& judge, const Progress& progress)
+{
+    const Result<std::vector<ProbeGrid>> poses = gridPoses(scene, place, progress);
+    if (!poses) return poses.error();
+    const ProbeGrid* best = nullptr;
+    double least = 0.0;
+    for (const ProbeGrid& pose : *poses)
+    {
+        const Result<double> wrong = judge(pose);
+        if (!wrong) return wrong.error();
+        if (!best || *wrong < least) best = &pose, least = *wrong;
+    }
+    return *best;
+}
+
 } // namespace
 
 std::string probeSetName(const PointSettings& settings)
 {
-    return fmt::format("{}{}{}", settings.placement, wantsPowersOfTwo(settings) ? "2-" : "-", settings.probes);
+    // A volume's grid is chosen by its light, the others' by rays.
+    const bool ofVolume = settings.placement == "grid" && settings.volume();
+    return fmt::format("{}{}-{}{}", settings.placement, wantsPowersOfTwo(settings) ? "2" : "", ofVolume ? settings.method + "-" : "",
+                       settings.probes);
 }
 
-Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress)
+Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress, const GridJudge& judge)
 {
     PlaceSettings place;
     place.count = settings.probes;
@@ -36,6 +55,12 @@ Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, 
         place.method = PlaceSettings::Method::grid;
         place.fitGrid = true; // opponents at their best
         place.powersOfTwo = wantsPowersOfTwo(settings);
+        if (judge)
+        {
+            const Result<ProbeGrid> best = bestGrid(scene, place, judge, progress);
+            if (!best) return best.error();
+            place.pose = *best;
+        }
     }
     else if (settings.placement != "optimised")
         return Error{ErrorCode::badArgument,

@@ -33,6 +33,7 @@ namespace
 constexpr uint32_t kTimerScopes = 32;
 constexpr uint32_t kTemporalFrames = 16; // of a still camera, before a picture that is filtered over time is judged
 constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
+constexpr uint32_t kJudgedMaps = 64; // texels, of grids to choose among
 constexpr uint64_t kPathSeed = 1000; // the path tracer's paths are not the reference's
 
 double secondsNow()
@@ -116,6 +117,7 @@ std::string SceneBench::pointKey(const PlannedPoint& point) const
                 {"seed", s.seed},
                 {"frames", s.frames}};
     if (point.settings.frame.roughness) all["roughness"] = *point.settings.frame.roughness;
+    if (point.settings.opponent()) all["light"] = point.settings.lightResolution;
     return keyOf(all);
 }
 
@@ -134,9 +136,16 @@ Status SceneBench::keep(const PlannedPoint& point, const Json& measured) const
     return writeText(cached("points", pointKey(point), ".json"), measured.dump(1));
 }
 
+std::string SceneBench::probesKey(const PointSettings& settings) const
+{
+    Json all = {{"build", desc.build}, {"scene", sceneKey}, {"set", probeSetName(settings)}};
+    if (settings.volume()) all["camera"] = {toJson(camera.eye), toJson(camera.forward)}; // its grid is chosen by the picture
+    return keyOf(all);
+}
+
 std::optional<BenchProbes> SceneBench::keptProbes(const PointSettings& settings) const
 {
-    const std::string key = keyOf(Json{{"build", desc.build}, {"scene", sceneKey}, {"set", probeSetName(settings)}});
+    const std::string key = probesKey(settings);
     auto set = loadProbes(cached("probes", key, ".json"));
     const std::optional<Json> report = readJson(cached("probes", key, ".report.json"));
     if (!set || !report) return {};
@@ -146,23 +155,57 @@ std::optional<BenchProbes> SceneBench::keptProbes(const PointSettings& settings)
 Result<BenchProbes> SceneBench::probesFor(const PointSettings& settings, const Progress& progress)
 {
     if (auto found = keptProbes(settings)) return std::move(*found);
-    auto made = placeFor(desc.scene, settings, progress);
+    auto made = placeFor(desc.scene, settings, progress, [&](const ProbeGrid& grid) { return wrongOnGrid(grid, settings); });
     if (!made) return made.error();
     if (made->set.probes.empty())
         return Error{ErrorCode::badInput, fmt::format("Placement {} of scene '{}' has no probes; ask for more.", made->name, desc.name)};
-    const std::string key = keyOf(Json{{"build", desc.build}, {"scene", sceneKey}, {"set", made->name}});
+    const std::string key = probesKey(settings);
     if (auto status = writeText(cached("probes", key, ".report.json"), made->report.dump()); !status) return status.error();
     if (auto status = saveProbes(made->set, cached("probes", key, ".json")); !status) return status.error();
     return made;
+}
+
+/// What a grid is chosen by: rays that our tracer answers wrongly on it, by small maps; of a volume the error of its diffuse light in the
+/// picture that is judged.
+Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSettings& settings)
+{
+    if (const std::optional<Volume> volume = settings.volume())
+    {
+        auto field = volumeOn(bareGrid(desc.scene, grid), settings, *volume, {});
+        if (!field) return field.error();
+        auto light = makeLightField(gpu, *field);
+        if (!light) return light.error();
+        auto renderer = rendererOf(settings, *light, settings.frame, {});
+        if (!renderer) return renderer.error();
+        auto frame = (*renderer)->render(camera);
+        if (!frame) return frame.error();
+        const Result<Json> errors = errorsOf(lightLayers(*frame));
+        if (!errors) return errors.error();
+        return (*errors)["diffuse"]["relmse"].is_number() ? (*errors)["diffuse"]["relmse"].get<double>() : HUGE_VAL;
+    }
+    std::vector<vec3> positions;
+    for (int z = 0; z < grid.count.z; ++z)
+        for (int y = 0; y < grid.count.y; ++y)
+            for (int x = 0; x < grid.count.x; ++x) positions.push_back(grid.origin + grid.step * vec3(x, y, z));
+    BakeSettings bake;
+    bake.resolution = kJudgedMaps;
+    bake.bounces = bake.surfaceTexels = 0;
+    bake.radiance = bake.prefiltered = false;
+    bake.grid = grid;
+    BakeReport report;
+    auto field = bakeLightField(gpu.host, desc.scene, positions, bake, {}, report);
+    if (!field) return field.error();
+    auto tracer = TracedMethod::create(gpu, std::move(*field), {.quality = settings.quality}, "grid");
+    if (!tracer) return tracer.error();
+    const Result<TraceScore> score = (*tracer)->score(*rays);
+    if (!score) return score.error();
+    return 2.0 - score->right1 - score->right02;
 }
 
 Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost, const Progress& progress)
 {
     auto probes = probesFor(settings, progress);
     if (!probes) return probes.error();
-    cost["probe_set"] = probes->name;
-    cost["place_s"] = probes->report["seconds"];
-    cost["coverage"] = probes->report["coverage"]["rays"];
     BakeSettings bake;
     bake.resolution = settings.resolution;
     bake.chart = settings.chart();
@@ -171,20 +214,58 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
     bake.surfaceRefined = settings.surfaceRefined;
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
-    if (bake.grid && bake.chart == gpu::kChartOctahedral) bake.bounceShader = gridBouncePass();
-    // What is measured of a field doesn't depend on the tracer that reads it: methods share fields.
-    const std::string key = keyOf(Json{{"build", desc.build},
-                                       {"format", kFieldFileVersion},
-                                       {"device", device},
-                                       {"scene", sceneKey},
-                                       {"probes", probes->name},
-                                       {"resolution", bake.resolution},
-                                       {"chart", bake.chart},
-                                       {"bounces", bake.bounces},
-                                       {"surface", bake.surfaceTexels},
-                                       {"refined", bake.surfaceTexels > 0 ? bake.surfaceRefined : 0.0f},
-                                       {"gather", settings.fieldGather},
-                                       {"voxels", bake.octree.voxels}});
+    Result<FieldData> field = Error{ErrorCode::badArgument, "Nothing is baked yet."};
+    if (settings.opponent() && settings.surfaceTexels > 0)
+    {
+        // An opponent's maps are lit as ours are, by what rays find at the surfaces that the same probes see.
+        BakeSettings lender = bake;
+        lender.chart = gpu::kChartCube;
+        lender.resolution = settings.lightResolution;
+        lender.surfaceTexels = settings.surfaceTexels;
+        Json lent = Json::object();
+        auto light = baked(*probes, lender, settings.fieldGather, "", lent, progress);
+        if (light && !light->lamps.empty()) // which opponents don't know
+        {
+            lender.lampTexels = 0;
+            light = baked(*probes, lender, settings.fieldGather, "", lent, progress);
+        }
+        if (!light) return light;
+        bake.light = &*light;
+        field = baked(*probes, bake, settings.fieldGather, fieldKey(probes->name, lender, settings.fieldGather, ""), cost, progress);
+        if (field) cost["bake_s"] = cost["bake_s"].get<double>() + lent["bake_s"].get<double>();
+    }
+    else
+        field = baked(*probes, bake, settings.fieldGather, "", cost, progress);
+    cost["probe_set"] = probes->name;
+    cost["place_s"] = probes->report["seconds"];
+    cost["coverage"] = probes->report["coverage"]["rays"];
+    return field;
+}
+
+/// What is measured of a field doesn't depend on the tracer that reads it: methods share fields.
+/// @param litBy  key of the field that lends its light; empty: none
+std::string SceneBench::fieldKey(const std::string& probes, const BakeSettings& bake, bool fieldGather, const std::string& litBy) const
+{
+    return keyOf(Json{{"build", desc.build},
+                      {"format", kFieldFileVersion},
+                      {"device", device},
+                      {"scene", sceneKey},
+                      {"probes", probes},
+                      {"resolution", bake.resolution},
+                      {"chart", bake.chart},
+                      {"bounces", bake.bounces},
+                      {"surface", bake.surfaceTexels},
+                      {"refined", bake.surfaceTexels > 0 ? bake.surfaceRefined : 0.0f},
+                      {"lamps", bake.surfaceTexels > 0 ? bake.lampTexels : 0},
+                      {"gather", fieldGather},
+                      {"voxels", bake.octree.voxels},
+                      {"lit by", litBy}});
+}
+
+Result<FieldData> SceneBench::baked(const BenchProbes& probes, BakeSettings bake, bool fieldGather, const std::string& litBy, Json& cost,
+                                    const Progress& progress)
+{
+    const std::string key = fieldKey(probes.name, bake, fieldGather, litBy);
     const std::filesystem::path file = cached("fields", key, ".sconce");
     if (const std::optional<Json> known = readJson(cached("fields", key, ".json")))
         if (auto field = loadField(file))
@@ -194,26 +275,26 @@ Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost
             return field;
         }
     std::vector<vec3> positions;
-    for (const PlacedProbe& probe : probes->set.probes) positions.push_back(probe.position);
+    for (const PlacedProbe& probe : probes.set.probes) positions.push_back(probe.position);
     BakeReport report;
-    std::optional<TriangleRays> rays;
-    if (bake.surfaceTexels > 0 && !settings.fieldGather)
+    std::optional<TriangleRays> exact;
+    if (bake.surfaceTexels > 0 && !fieldGather)
     {
         auto built = TriangleRays::build(desc.scene);
         if (!built) return built.error();
-        bake.rays = &rays.emplace(std::move(*built));
+        bake.rays = &exact.emplace(std::move(*built));
     }
     auto field = bakeLightField(gpu.host, desc.scene, positions, bake, progress, report);
     if (!field) return field;
     for (const SceneEffect& effect : checkScene(desc.scene).effects)
         if (effect.called) field->effects.push_back(effect.name);
-    const Json baked = {
+    const Json spent = {
         {"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.gatherSeconds + report.bounceSeconds},
         {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
     // The field before its report: both must be there to be used again, so that a run stopped in between bakes anew.
     if (auto status = saveField(*field, file); !status) return status.error();
-    if (auto status = writeText(cached("fields", key, ".json"), baked.dump()); !status) return status.error();
-    cost.update(baked);
+    if (auto status = writeText(cached("fields", key, ".json"), spent.dump()); !status) return status.error();
+    cost.update(spent);
     cost["field"] = std::filesystem::relative(file, desc.folder).string();
     return field;
 }
@@ -238,14 +319,19 @@ Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume vo
     }
     if (!places) return places;
     const double begin = secondsNow();
+    auto made = volumeOn(std::move(*places), settings, volume, progress);
+    cost["bake_s"] = secondsNow() - begin;
+    return made;
+}
+
+Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress)
+{
     VolumeSettings wanted;
     wanted.bias = settings.lookUpBias;
     wanted.bounces = settings.bounces;
     wanted.seed = desc.settings.seed;
     wanted.solids = checkScene(desc.scene).openEdgeShare <= kMostOpenEdges;
-    auto made = irradianceVolume(std::move(*places), volume, *truth, wanted, progress);
-    cost["bake_s"] = secondsNow() - begin;
-    return made;
+    return irradianceVolume(std::move(places), volume, *truth, wanted, progress);
 }
 
 Status SceneBench::makeReference(const std::optional<float>& roughness, const Progress& progress)
@@ -366,9 +452,6 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
         !status)
         return status.error();
     RenderSettings frame = settings.frame;
-    frame.width = desc.settings.width;
-    frame.height = desc.settings.height;
-    frame.seed = uint32_t(desc.settings.seed);
     if (const std::optional<Baseline> opponent = settings.opponent())
     {
         const gpu::LightFieldInfo& info = live.tracer->data().info;
@@ -376,18 +459,27 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
         // The frame's rays start where the race's do, for every tracer.
         frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
     }
-    if (volume)
+    if (settings.filteredPaths()) showPaths(frame, settings.paths);
+    auto renderer = rendererOf(settings, live.untraced ? *live.untraced : live.tracer->lightField(), std::move(frame), progress);
+    if (!renderer) return renderer.error();
+    live.renderer = std::move(*renderer);
+    return live;
+}
+
+Result<std::unique_ptr<SceneRenderer>> SceneBench::rendererOf(const PointSettings& settings, const LightField& field, RenderSettings frame,
+                                                              const Progress& progress)
+{
+    frame.width = desc.settings.width;
+    frame.height = desc.settings.height;
+    frame.seed = uint32_t(desc.settings.seed);
+    if (const std::optional<Volume> volume = settings.volume())
     {
         frame.lightShaders.gather = volumePass(*volume);
         frame.effects.rough = frame.effects.glossy = frame.effects.mirror = false; // it holds none
     }
-    if (settings.filteredPaths()) showPaths(frame, settings.paths);
     auto scene = sceneOf(frame.effects, progress);
     if (!scene) return scene.error();
-    auto renderer = SceneRenderer::create(gpu, **scene, live.untraced ? *live.untraced : live.tracer->lightField(), frame);
-    if (!renderer) return renderer.error();
-    live.renderer = std::move(*renderer);
-    return live;
+    return SceneRenderer::create(gpu, **scene, field, frame);
 }
 
 Status SceneBench::makeTracer(Live& live, const Progress& progress)

@@ -29,8 +29,9 @@ struct PointSettings
     uint32_t probes = knobs::benchProbes.value; // asked for; a grid takes the nearest that its shape allows
     std::string placement = std::string(knobs::placement.value); // optimised, skeleton (not refined afterwards), balls, grid
     uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
+    uint32_t lightResolution = knobs::benchResolution.value; // of the maps of cube faces by which an opponent's maps are lit
     uint32_t bounces = knobs::benchBounces.value;
-    uint32_t surfaceTexels = knobs::surfaceTexels.value; // of ours; patches are of fields without
+    uint32_t surfaceTexels = knobs::surfaceTexels.value; // of ours, and of what an opponent's maps are lit by; patches are of fields without
     float surfaceRefined = knobs::surfaceRefined.value;  // share of them, where triangles are gathered from
     bool fieldGather = knobs::gather.is("field");        // surface light gathered through the field, not by rays to triangles
     int octreeVoxels = knobs::octreeVoxels.value;        // OctreeSettings::voxels

@@ -1,5 +1,6 @@
 #include "runtime/bake/bake.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -84,6 +85,19 @@ std::string surfaceFault(const gpu::LightFieldInfo& info, const Scene& scene, co
         return fmt::format("the rays are of a scene of {} triangles, and that which is baked has {}; give rays of the same scene",
                            settings.rays->scene().triangles.size(), scene.triangles.size());
     return {};
+}
+
+/// Why another field's light can't be lent to one in this space with these probes; empty where it can.
+std::string lentFault(const FieldData& light, const gpu::LightFieldInfo& info, std::span<const gpu::ProbeHeader> probes)
+{
+    if (light.surfaceLight.empty() || !light.lamps.empty())
+        return "the field that lends its light holds no surface light, or lamps beside it; bake it with surface texels and without lamps";
+    const bool samePlaces = light.info.origin == info.origin && light.info.scale == info.scale &&
+                            std::ranges::equal(light.probes, probes, {}, &gpu::ProbeHeader::centre, &gpu::ProbeHeader::centre);
+    if (samePlaces) return {};
+    return fmt::format("the field that lends its light has {} probes, not the {} at the same places that are baked; bake it of the same "
+                       "scene and probes",
+                       light.probes.size(), probes.size());
 }
 
 /// The cube faces' level 0 words at half their size, each from the plane of one of its four texels, with their chain: what summaries and
@@ -197,9 +211,10 @@ struct Bake
     Status directLight(ProbeBaker& baker);
     Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
     Result<LightField> asItIs(Gpu& gpu);
-    Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage, Spirv shader);
+    Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage);
     Status bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
     Status surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
+    Status lentLight(Gpu& gpu, ProbeBaker& baker, const FieldData& light, BakeReport& spent);
 };
 
 Status Bake::directLight(ProbeBaker& baker)
@@ -251,14 +266,14 @@ Result<LightField> Bake::asItIs(Gpu& gpu)
 }
 
 /// Every probe's radiance: its direct light and what its surfaces reflect of the field's.
-Status Bake::reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage, Spirv shader)
+Status Bake::reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage)
 {
     const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
         if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
         const std::span<const uint32_t> own = std::span(direct).subspan(i * texels, texels);
-        auto status = baker.bakeBounce(uint32_t(i), field.probes[i].centre, lit, own, target(i), shader);
+        auto status = baker.bakeBounce(uint32_t(i), field.probes[i].centre, lit, own, target(i));
         if (!status) return status;
     }
     return success();
@@ -273,7 +288,7 @@ Status Bake::bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, 
     {
         auto lit = asItIs(gpu);
         if (!lit) return lit.error();
-        if (auto status = reflect(*lit, baker, fmt::format("bounce {}", b), settings.bounceShader); !status) return status;
+        if (auto status = reflect(*lit, baker, fmt::format("bounce {}", b)); !status) return status;
         const double with = meanRadiance(field);
         spent.energy.push_back(with - energy);
         field.bounces = b;
@@ -326,12 +341,23 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     auto lit = asItIs(gpu);
     if (!lit) return lit.error();
-    if (auto status = reflect(*lit, baker, "radiance", {}); !status) return status;
+    if (auto status = reflect(*lit, baker, "radiance"); !status) return status;
     // What arrives at a surface has been scattered once less than what it sends: once more, so that frames show as many bounces by either.
     if (auto status = surfaces->bounce(); !status) return status;
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     if (auto status = cancelledIfAsked("refined texels", 0, 1); !status) return status;
     return surfaces->refine(field, settings.surfaceRefined);
+}
+
+/// The probes' radiance of what their surfaces reflect of light that another field holds.
+Status Bake::lentLight(Gpu& gpu, ProbeBaker& baker, const FieldData& light, BakeReport& spent)
+{
+    auto lit = makeLightField(gpu, light);
+    if (!lit) return lit.error();
+    if (auto status = reflect(*lit, baker, "radiance"); !status) return status;
+    spent.energy.push_back(meanRadiance(field) - spent.energy.back());
+    field.bounces = light.bounces;
+    return success();
 }
 
 } // namespace
@@ -342,6 +368,15 @@ void BakeSettings::take(const EffectPlan& plan, bool tracedDiffuse)
     prefiltered = plan.needsPrefiltered() || !radiance; // a traced ray's colour, when someone asks for one
     for (const PlannedEffect& effect : plan.effects)
         if (effect.on) effects.push_back(effect.name);
+}
+
+BakeSettings lendingBake(BakeSettings settings)
+{
+    settings.chart = gpu::kChartCube;
+    settings.resolution = (settings.resolution + 31) / 32 * 32; // of cube faces
+    settings.lampTexels = 0;
+    settings.radiance = settings.prefiltered = false;
+    return settings;
 }
 
 Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
@@ -360,7 +395,8 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     info.sky = scene.sky;
     info.probeCount = uint32_t(probes.size());
     setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
-    info.surfaceSize = surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
+    info.surfaceSize = settings.light ? 0 : surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
+    const bool surfaceLight = info.surfaceSize > 0 || settings.light;
     info.surfaceDirections = info.surfaceSize > 0 && hasNormalTextures(scene) ? 1 : 0;
     if (const std::string fault = surfaceFault(info, scene, settings); !fault.empty())
         return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
@@ -383,6 +419,9 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     spent.moved = cleared.moved;
     spent.tight = cleared.tight;
     for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (cleared.positions[i] - info.origin) / info.scale;
+    if (settings.light)
+        if (const std::string fault = lentFault(*settings.light, info, bake.field.probes); !fault.empty())
+            return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
 
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
@@ -393,12 +432,12 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         bake.field.lamps = std::move(lamps.lamps);
         bake.field.lampMaps = std::move(lamps.maps);
         DeviceSceneDesc sceneDesc = settings.scene;
-        if (info.surfaceSize > 0) // emitters are shadowed by rays, and rays find the sky
+        if (surfaceLight) // emitters are shadowed by rays, and rays find the sky
             sceneDesc.light = {
                 .emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
         auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
-        auto baker = ProbeBaker::create(**gpu, *deviceScene, info);
+        auto baker = ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight);
         if (!baker) return baker.error();
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();
@@ -429,10 +468,11 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         if (info.surfaceSize > 0) info.cellShift = cellShiftOf(info);
         spent.octreeSeconds = watch.lap();
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
-        if (settings.bounces > 0 || info.surfaceSize > 0) bake.direct = bake.field.radiance;
+        if (settings.bounces > 0 || surfaceLight) bake.direct = bake.field.radiance;
         spent.energy.push_back(meanRadiance(bake.field));
-        const Status bounced = info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
-                                                    : bake.bounces(**gpu, **baker, settings, spent);
+        const Status bounced = settings.light        ? bake.lentLight(**gpu, **baker, *settings.light, spent)
+                               : info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
+                                                      : bake.bounces(**gpu, **baker, settings, spent);
         if (!bounced) return bounced.error();
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
         // Made from the light of the last bounce; only then may the radiance go that they are made from.

@@ -9,7 +9,6 @@
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/device_scene.h"
 #include "runtime/vulkan/host_vulkan.h"
-#include "runtime/vulkan/pipeline.h"
 #include "scene/exact_rays.h"
 #include "scene/probe_grid.h"
 #include "svo/build_octree.h"
@@ -35,12 +34,17 @@ struct BakeSettings
     bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid;                // set when the probes are a uniform one
-    Spirv bounceShader;                           // with bake_bounce.comp's interface; empty: our own
+    /// Baked before, of the same scene and probes, with cube faces, surface light and no lamps: its light is what the probes' surfaces
+    /// reflect, and nothing is gathered. What octahedral maps need, which hold no surface light. Null: what this bake finds itself.
+    const FieldData* light = nullptr;
     uint64_t hostMemory = knobs::hostBytes.value; // bytes of main memory that it may take; 0: what is free
 
     /// Keeps what frames by a plan ask for, and the names of the plan's effects. @param tracedDiffuse  diffuse light by rays, too
     void take(const EffectPlan& plan, bool tracedDiffuse = false);
 };
+
+/// The bake that finds light at surfaces for another with these settings to take as its `light`: cube faces of as many texels, no lamps.
+BakeSettings lendingBake(BakeSettings settings);
 
 /// What a bake cost. Seconds are wall-clock.
 struct BakeReport

@@ -43,9 +43,10 @@ void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 
 } // namespace
 
-Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info)
+Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
+                                                       bool surfaceLight)
 {
-    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info));
+    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight));
     baker->octahedral = info.chart == gpu::kChartOctahedral;
     baker->emitters = scene.lights().shines;
     baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
@@ -137,7 +138,7 @@ Status ProbeBaker::createPipelines()
         Spirv code;
         std::span<const VkDescriptorSetLayout> sets;
     };
-    const ShaderConstant areaLight{gpu::kBakeAreaLightId, info.surfaceSize == 0 ? 1u : 0u};
+    const ShaderConstant areaLight{gpu::kBakeAreaLightId, surfacesLit ? 0u : 1u};
     for (const Pass& pass :
          {Pass{surfacePass, bake_surface_comp, sceneAndImages}, Pass{chainPass, bake_chain_comp, {}}, Pass{texelPass, bake_texels_comp, {}},
           Pass{octahedralPass, bake_octahedral_comp, imagesOnly}, Pass{lowPass, bake_octahedral_low_comp, {}},
@@ -348,13 +349,13 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
 }
 
 Status ProbeBaker::bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct,
-                              const ProbeTarget& target, Spirv bounceShader)
+                              const ProbeTarget& target)
 {
     if (!bouncePass)
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
-        const Spirv own = info.surfaceSize > 0 ? Spirv(bake_bounce_surface_comp) : Spirv(bake_bounce_comp);
-        auto made = Pipeline::compute(gpu, bounceShader.empty() ? own : bounceShader, sets, sizeof(gpu::BakePush), shaderConstants(field));
+        const Spirv code = surfacesLit ? Spirv(bake_bounce_surface_comp) : Spirv(bake_bounce_comp);
+        auto made = Pipeline::compute(gpu, code, sets, sizeof(gpu::BakePush), shaderConstants(field));
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }

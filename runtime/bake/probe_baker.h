@@ -29,21 +29,21 @@ struct ProbeTarget
 class ProbeBaker
 {
 public:
-    /// @param info  its surfaceSize says whether there will be surface light; direct light is then of what has no extent alone
-    static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info);
+    /// @param surfaceLight  whether surfaces are lit by surface light: direct light is then of what has no extent alone
+    static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
+                                                      bool surfaceLight);
 
     /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
     Status bakeDirect(vec3 centre, const ProbeTarget& target);
     /// Radiance = direct + what the surfaces reflect of the field's irradiance; then the probe's irradiance of that, moments untouched.
     /// With surface light, which the field must hold by then, what the surfaces reflect of that.
-    /// @param direct        the probe's radiance after bakeDirect
-    /// @param bounceShader  BakeSettings::bounceShader; the first one that a baker is given stays
-    Status bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target,
-                      Spirv bounceShader);
+    /// @param field   with a probe of the same number at the same place; may be another than that which is baked
+    /// @param direct  the probe's radiance after bakeDirect
+    Status bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target);
 
 private:
-    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo)
-        : gpu(device), scene(deviceScene), info(fieldInfo)
+    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo, bool surfaceLight)
+        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight)
     {
     }
     Status createPipelines();
@@ -60,6 +60,7 @@ private:
     Gpu& gpu;
     const DeviceScene& scene;
     const gpu::LightFieldInfo info;
+    const bool surfacesLit; // by surface light
     bool octahedral = false;
     bool emitters = false;      // whether emission is kept a texel
     uint32_t radianceWords = 0; // of the chart

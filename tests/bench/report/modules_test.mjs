@@ -135,3 +135,121 @@ test("error and tone curve follow their definitions", async () => {
     };
     assert.equal(topOf([counts]), 49); // the highest few and those without a number don't count
 });
+
+/** A default point of a method: shares of rays that are wrong, FLIP, mean of diffuse light, ms and MB; what is null wasn't measured. */
+function pointOf(method, { wrong = null, flip = null, mean = null, ms = null, mb = null, probes = 54, ...rest } = {}) {
+    return {
+        id: `${method}/default`,
+        method,
+        knob: "default",
+        value: "",
+        probes,
+        rays: wrong === null ? null : { right_1: 1 - wrong },
+        error: { beauty: { flip }, diffuse: { mean } },
+        frame_ms: ms === null ? null : { median: ms },
+        bytes: mb === null ? null : { total: 1e6 * mb },
+        ...rest,
+    };
+}
+const said = async (points, prices = []) => (await load("opening")).openingSentences({ name: "made up", points, analysis: { prices } });
+
+test("three sentences: each against the opponent that is hardest to beat in it", async () => {
+    assert.deepEqual(
+        await said([
+            pointOf("b0", { wrong: 0.3, flip: 0.4, mean: 0.7, ms: 5, mb: 90 }),
+            pointOf("ours", { wrong: 0.01, flip: 0.1, mean: 1.02, ms: 20, mb: 100 }),
+            pointOf("b0plus", { wrong: 0.03, flip: 0.3, mean: 0.8, ms: 30, mb: 80, probes: 48 }),
+            pointOf("ddgi-placed", { flip: 0.2, mean: 0.88, ms: 10, mb: 2 }),
+        ]),
+        [
+            "With 54 probes against 48, 1.00 % of Sconce's glossy rays are wrong, 3.00 % with B0+: Sconce wins by a factor of 3.00.",
+            "Sconce's picture is off by FLIP 0.100, 0.200 with DDGI on Sconce's probes: Sconce wins by a factor of 2.00; its diffuse light is 2.0 % too bright, 12 % too dark with DDGI on Sconce's probes: Sconce wins.",
+            "Sconce's frame takes 20.0 ms, 10.0 ms with DDGI on Sconce's probes: Sconce loses by a factor of 2.00; its light field takes 100 MB, 2.00 MB with DDGI on Sconce's probes: Sconce loses by a factor of 50.0.",
+        ],
+    );
+});
+
+test("a loss is said, a draw within 3 %, and none wrong at all", async () => {
+    const verdicts = async (ours, theirs) =>
+        (await said([pointOf("ours", { wrong: ours }), pointOf("b0plus", { wrong: theirs })]))[0].replace(/^.*: /, "");
+    assert.equal(await verdicts(0.06, 0.03), "Sconce loses by a factor of 2.00.");
+    assert.equal(await verdicts(0.0302, 0.03), "a draw.");
+    assert.equal(await verdicts(0.0298, 0.03), "a draw.");
+    assert.equal(await verdicts(0.0312, 0.03), "Sconce loses by a factor of 1.04.");
+    assert.equal(await verdicts(0, 0), "a draw.");
+    assert.equal(await verdicts(0, 0.03), "Sconce wins.");
+    assert.equal(await verdicts(0.03, 0), "Sconce loses.");
+});
+
+test("no opponent is ours, a path tracer, a wrong picture or another setting", async () => {
+    const { opponentsOf } = await load("opening");
+    const good = { wrong: 0.001, flip: 0.001, ms: 1, mb: 1 };
+    const points = [
+        pointOf("ours", { wrong: 0.01, flip: 0.1, ms: 20, mb: 100 }),
+        pointOf("ours-grid", good),
+        pointOf("path tracer", good),
+        pointOf("path tracer filtered", good),
+        { ...pointOf("b0", good), wrong: "Half of the rays are wrong." },
+        { ...pointOf("b0plus", good), knob: "probes", value: "1024" },
+    ];
+    assert.deepEqual(opponentsOf({ points }), []);
+    const sentences = await said(points);
+    assert.match(sentences[0], /; no opponent's rays were judged\.$/);
+    assert.match(sentences[1], /; no opponent's picture was judged\.$/);
+    assert.equal(sentences[2], "Sconce's frame takes 20.0 ms; its light field takes 100 MB.");
+});
+
+test("what was not measured is said", async () => {
+    assert.deepEqual(await said([]), ["Sconce's default setting was not measured in this scene."]);
+    assert.deepEqual(await said([pointOf("ours", { probes: null }), pointOf("wang", { wrong: 0.1, flip: 0.1 })]), [
+        "Not measured of Sconce: wrong rays (not within 1 %).",
+        "Not measured of Sconce: FLIP of beauty.",
+        "Not measured of Sconce: frame time; not measured of Sconce: memory.",
+    ]);
+    assert.equal(
+        (await said([pointOf("ours", { ms: 20, mb: 9 }), pointOf("wang", { flip: 0.1 })]))[2],
+        "Sconce's frame takes 20.0 ms, not measured with W'; its light field takes 9.00 MB, not measured with W'.",
+    );
+    const wrong = await said([{ ...pointOf("ours", { wrong: 0.6 }), wrong: "More than half of the rays are answered wrongly." }]);
+    assert.equal(wrong[0], "Sconce's picture is wrong here: More than half of the rays are answered wrongly.");
+    assert.equal(wrong.length, 4);
+});
+
+test("the price is that of the knob that takes the least time", async () => {
+    const row = (to, error_ratio, time, memory, rest) => ({
+        knob: "resolution",
+        error_key: "wrong_rays",
+        from: "ours/default",
+        to,
+        error_ratio,
+        time_ratio: 1.1,
+        halving_costs_time: time,
+        halving_costs_memory: memory,
+        ...rest,
+    });
+    const price = async (...rows) => (await said([pointOf("ours", { ms: 20, mb: 9 })], rows))[2].split("; ")[2];
+    const rows = [row("a", 0.5, 1.4, 2), row("b", 0.6, 1.2, 3), row("c", 1.5, 1.01, 1), row("d", 0.95, null, null)];
+    assert.equal(await price(...rows), "half as many wrong rays would cost 1.20× the frame time and 3.00× the memory, at the rate of resolution.");
+    assert.equal(await price(rows[2], rows[3]), "no knob that was varied would buy half as many wrong rays.");
+    assert.equal(
+        await price(row("a", 0.5, 1.4, null, { time_ratio: null, error_key: "glossy.relmse" })),
+        "half the error of reflections would cost 1.40× the reads, at the rate of resolution.",
+    );
+    assert.equal(await price(), undefined);
+});
+
+test("methods have names, and every style of them is its own", async () => {
+    const { methodName, methodStyles } = await load("methods");
+    for (const [method, name] of Object.entries({
+        ours: "Sconce",
+        "path tracer filtered": "filtered path tracer",
+        ddgi: "DDGI",
+        "ddgi-placed": "DDGI on Sconce's probes",
+        "sh-grid": "SH grid",
+        "another one": "another one",
+    }))
+        assert.equal(methodName(method), name);
+    const known = [...methodStyles([]).values()];
+    assert.equal(new Set(known.map((style) => style.colour + style.outline)).size, 11);
+    assert.equal(methodStyles(["ours", "another one"]).size, 12);
+});

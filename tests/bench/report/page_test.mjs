@@ -66,9 +66,10 @@ const choose = (legend, label) =>
 const pane = () => page.locator("canvas.pane").first();
 /** Waits until these images are left and right of the divider: they are unpacked meanwhile. */
 async function expectImages(left, right) {
-    await page.locator(".badge.left", { hasText: new RegExp(`^${left}$`) }).waitFor();
-    await page.locator(".badge.right", { hasText: new RegExp(`^${right}$`) }).waitFor();
+    for (const [side, text] of Object.entries({ left, right })) await page.locator(`.badge.${side}`).getByText(text, { exact: true }).waitFor();
 }
+/** Unfolds the table of all points, as a reader would. */
+const openTable = () => page.locator("#points summary").click();
 const values = () => page.locator(".values").innerText();
 
 /** Waits for the frame that draws what was changed. */
@@ -87,11 +88,114 @@ async function toImages() {
     });
 }
 
+const stills = () => page.locator("#opening .stills figure");
+const said = () => page.locator("#opening li").allInnerTexts();
+/** What stands under the pictures that a scene begins with, when they are drawn. */
+async function captions() {
+    await page.waitForFunction(() => [...document.querySelectorAll(".still")].every((place) => place.children.length > 0));
+    return stills().locator("figcaption").allInnerTexts();
+}
+
+test("a scene begins with ours, the strongest opponent and the reference, then three sentences; the table is folded", async () => {
+    await open("typical");
+    const parts = await page.locator("#scene > *").evaluateAll((all) => all.map((one) => one.id));
+    assert.deepEqual(parts.slice(0, 3), ["", "opening", "answers"]);
+    assert.deepEqual(await captions(), ["Sconce · FLIP 0.0697 · 38.0 ms", "W' · FLIP 0.0935 · 56.0 ms", "reference · 256 paths a pixel"]);
+    const boxes = await stills().evaluateAll((all) => all.map((one) => one.getBoundingClientRect().toJSON()));
+    assert.ok(boxes[0].right <= boxes[1].left && boxes[1].right <= boxes[2].left, "side by side");
+    assert.ok(boxes.every(({ top, bottom }) => top === boxes[0].top && bottom < 720), "in the first window, in one line");
+    const sentences = await said();
+    assert.equal(sentences.length, 3);
+    assert.equal(sentences[0], "With 54 probes each, 1.80 % of Sconce's glossy rays are wrong, 3.24 % with W': Sconce wins by a factor of 1.80.");
+    assert.equal(await page.locator("#points details").getAttribute("open"), null);
+    assert.equal(await page.locator("#points summary").innerText(), "Table of 55 rows, one a point");
+    assert.equal(await page.locator("#points table").isVisible(), false);
+    noFaults();
+});
+
+test("the strongest opponent is that of the term which is shown", async () => {
+    await open("typical");
+    await captions();
+    await choose("Pictures of", "diffuse");
+    const [ours, theirs] = await captions();
+    assert.match(ours, /^Sconce · FLIP 0.0900 /);
+    assert.match(theirs, /^B0\+ · FLIP 0.0450 /); // better than ours
+    assert.equal(await stills().nth(1).locator("canvas").getAttribute("aria-label"), "diffuse of B0+");
+    await choose("Pictures of", "beauty");
+    assert.match((await captions())[1], /^W' /);
+    noFaults();
+});
+
+test("the first pictures have one exposure, and sentences say that ours loses", async () => {
+    await open("losing");
+    await captions();
+    const tones = await stills().locator("canvas").evaluateAll((all) => all.map((canvas) => window.colourAt(canvas, 0.5, 0.5)[0]));
+    const toneOf = (radiance) => {
+        const x = 0.6 * 0.18 * radiance; // the reference is 1 everywhere, which is shown as 0.18
+        const tone = (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
+        return 255 * (1.055 * tone ** (1 / 2.4) - 0.055);
+    };
+    [0.5, 1, 1].forEach((radiance, index) => assert.ok(Math.abs(tones[index] - toneOf(radiance)) <= 1.5, `${tones} at ${index}`));
+    assert.deepEqual(await said(), [
+        "With 54 probes each, 10.00 % of Sconce's glossy rays are wrong, 3.24 % with W': Sconce loses by a factor of 3.09.",
+        "Sconce's picture is off by FLIP 0.500, 0.0935 with W': Sconce loses by a factor of 5.35; its diffuse light is 50 % too dark, 3.6 % too dark with W': Sconce loses.",
+        "Sconce's frame takes 1000 ms, 56.0 ms with W': Sconce loses by a factor of 17.9; its light field takes 900 MB, 135 MB with W': Sconce loses by a factor of 6.67; half as many wrong rays would cost 1.15× the frame time and 3.22× the memory, at the rate of probes 128.",
+    ]);
+    noFaults();
+});
+
+test("without an opponent, or pictures, the beginning says so", async () => {
+    await open("known"); // one point
+    assert.deepEqual(await captions(), ["Sconce · FLIP 0.0697 · 38.0 ms", "no opponent", "reference · 256 paths a pixel"]);
+    assert.equal(await stills().nth(1).locator(".still").innerText(), "No opponent's beauty was measured.");
+    assert.equal(await stills().locator("canvas").count(), 2);
+    assert.match((await said())[1], /^Sconce's picture is off by FLIP 0.0697; .*; no opponent's picture was judged\.$/);
+    assert.equal(await page.locator("#points summary").innerText(), "Table of 1 row, one a point");
+    noFaults();
+    await page.context().close();
+    await open("one"); // without images
+    await page.getByText("No picture of Sconce's was kept of this scene.").waitFor();
+    assert.equal((await said()).length, 3);
+    noFaults();
+});
+
+test("the folded table opens for a link, an address, a picked point and paper, and counts its rows", async () => {
+    const folded = () => page.locator("#points details").evaluate((one) => !one.open);
+    await open("typical");
+    await page.getByRole("link", { name: "Points" }).click();
+    assert.equal(await folded(), false);
+    await page.locator("#points tbody tr").first().waitFor({ state: "visible" });
+    await page.getByLabel("Filter").fill("wang");
+    assert.equal(await page.locator("#points summary").innerText(), "Table of 11 rows, one a point");
+    await openTable();
+    assert.equal(await folded(), true);
+    await page.evaluate(() => (location.hash = "#points"));
+    await page.waitForFunction(() => document.querySelector("#points details").open);
+    await page.reload();
+    assert.equal(await folded(), false, "by the address from the start");
+    noFaults();
+    await page.context().close();
+
+    await open("typical");
+    await page.locator(".plot").first().focus();
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await folded(), true);
+    await page.keyboard.press("Enter");
+    assert.equal(await folded(), false);
+    assert.ok(await page.locator("#points tr.picked").isVisible());
+    await openTable();
+    await page.evaluate(() => addEventListener("beforeprint", () => (window.onPaper = document.querySelector("#points details").open)));
+    await page.pdf();
+    assert.equal(await page.evaluate(() => window.onPaper), true);
+    assert.equal(await folded(), true, "and closes again");
+    noFaults();
+});
+
 test("hovered points name their method, figures and settings; a click shows all of one", async () => {
     await open("typical");
     const [x, y] = await findPoint(page.locator(".plot").first());
     const text = await tooltip();
-    assert.match(text, /^(ours|b0plus|b0|wang|path tracer), /);
+    assert.match(text, /^(Sconce|B0\+|B0|W'|path tracer), /);
     assert.match(text, /frame time\s+[\d.]+ ms \([\d.]+ to [\d.]+\)/);
     assert.match(text, /relMSE of glossy\s+[\d.]+/);
     assert.match(text, /probes \d+ · placement \w+ · resolution \d+/); // in the order of results.json
@@ -108,10 +212,10 @@ test("plots are walked through and zoomed by keys, and dragged", async () => {
     const plot = page.locator(".plot").first();
     await plot.focus();
     await page.keyboard.press("ArrowRight");
-    assert.match(await tooltip(), /^ours, ranked 1\n/); // the cheapest
+    assert.match(await tooltip(), /^Sconce, ranked 1\n/); // the cheapest
     await page.keyboard.press("ArrowRight");
     const second = await tooltip();
-    assert.doesNotMatch(second, /^ours, ranked 1\n/);
+    assert.doesNotMatch(second, /^Sconce, ranked 1\n/);
     await page.keyboard.press("Enter");
     assert.equal(await page.locator(".details h3").innerText(), second.split("\n")[0]);
 
@@ -146,6 +250,7 @@ test("methods are hidden and other errors chosen", async () => {
 
 test("tables sort, with what was not measured last, and filter", async () => {
     await open("typical");
+    await openTable();
     const column = (index) =>
         page.locator("#points tbody tr").evaluateAll((rows, at) => rows.map((row) => row.children[at].innerText.trim()), index);
     const head = page.locator("#points thead th", { hasText: "reads a ray" });
@@ -216,16 +321,16 @@ test("the divider moves by mouse and keyboard", async () => {
 test("keys switch images and layers, and swap and show all", async () => {
     await open("typical");
     await toImages();
-    await expectImages("ours", "reference");
+    await expectImages("Sconce", "reference");
     await pane().focus();
     await page.keyboard.press("2");
-    await expectImages("b0plus", "reference");
+    await expectImages("B0+", "reference");
     await page.keyboard.press("Shift+Digit2");
     await page.keyboard.press("Shift+E");
-    await expectImages("b0plus", "error of b0plus");
+    await expectImages("B0+", "error of B0+");
     assert.ok((await page.locator(".colours").innerText()).includes("1 and more"));
     await page.keyboard.press("x");
-    await expectImages("error of b0plus", "b0plus");
+    await expectImages("error of B0+", "B0+");
     await page.keyboard.press("1");
     await page.keyboard.press("l");
     await page.keyboard.press("l");
@@ -234,9 +339,9 @@ test("keys switch images and layers, and swap and show all", async () => {
     await page.keyboard.press("ArrowRight");
     assert.match(await values(), /probe \d+ at .*: (skeleton ridge|free point|gap|pinned)/);
     await page.keyboard.press("v");
-    assert.equal(await page.locator("canvas.pane").count(), 3);
+    assert.equal(await page.locator("canvas.pane").count(), 4);
     await choose("Layer", "beauty");
-    await page.locator("figcaption", { hasText: "error of ours" }).waitFor(); // the left side's choice holds for all
+    await page.locator("figcaption", { hasText: "error of Sconce" }).waitFor(); // the left side's choice holds for all
     noFaults();
 });
 
@@ -249,7 +354,7 @@ test("pixel values are the file's, whatever the exposure; zoom and crosshair are
         await page.mouse.move(box.x + ((x + 0.5) / 8) * box.width, box.y + ((y + 0.5) / 4) * box.height);
         return (await values()).split("\n").map((line) => line.trim());
     };
-    assert.deepEqual((await pixel(0, 0)).slice(0, 4), ["pixel", "0, 0", "ours", "1.000  2.000  3.000"]);
+    assert.deepEqual((await pixel(0, 0)).slice(0, 4), ["pixel", "0, 0", "Sconce", "1.000  2.000  3.000"]);
     assert.equal((await pixel(1, 0))[3], "4.000  5.000  6.000");
     assert.match((await pixel(2, 0))[3], /^NaN /);
     assert.match((await pixel(3, 0))[3], /^Infinity /);
@@ -342,10 +447,11 @@ test("another scene is chosen and stays in the address; commands are copied", as
 
 test("a point's images are shown from its details", async () => {
     await open("typical");
-    await page.locator("#points tbody tr", { hasText: "b0plus" }).first().locator("button").click();
+    await openTable();
+    await page.locator("#points tbody tr", { hasText: "B0+" }).first().locator("button").click();
     await page.getByRole("button", { name: "Show its images" }).click();
     await toImages();
-    await expectImages("b0plus", "reference");
+    await expectImages("B0+", "reference");
     noFaults();
 });
 
@@ -369,6 +475,7 @@ for (const name of ["one", "many", "names", "missing", "empty"])
 
 test("what is missing is said, not shown as zero", async () => {
     await open("missing");
+    await openTable();
     const cells = await page.locator("#points tbody tr").nth(1).locator("td").allInnerTexts();
     assert.ok(
         cells.slice(1).every((text) => text === "–"),
@@ -377,7 +484,7 @@ test("what is missing is said, not shown as zero", async () => {
     assert.match(await page.locator(".plot-cell .note").first().innerText(), /^\d+ of 55 points without a figure here$/);
     await toImages();
     await choose("Layer", "glossy");
-    await page.getByText("ours has no image of glossy.").waitFor();
+    await page.getByText("Sconce has no image of glossy.").waitFor();
     await choose("Scene", "nothing but a name");
     await page.getByText("This scene has no images.").waitFor();
     noFaults();
@@ -392,6 +499,7 @@ test("no serious fault of accessibility, light and dark", async () => {
     for (const theme of ["light", "dark"]) {
         await open("typical", theme);
         await toImages();
+        await openTable();
         await page.locator("#points tbody button").first().click();
         await page.evaluate(axeSource);
         const rules = theme === "light" ? {} : { runOnly: ["color-contrast"] }; // the rest doesn't depend on the theme

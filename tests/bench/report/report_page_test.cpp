@@ -86,7 +86,7 @@ TEST_F(ReportPage, HoldsEveryImageToTheByte)
     const Json results = madeUpResults(folder);
     ASSERT_TRUE(writeReportPage(results, folder).ok());
     const std::string text = page();
-    EXPECT_EQ(countOf(text, "<script type=\"application/octet-stream\""), 2u * (3 + 2 * 7));
+    EXPECT_EQ(countOf(text, "<script type=\"application/octet-stream\""), 2u * (3 + 3 * 7));
     for (const auto& [layer, file] : results["scenes"][0]["points"][0]["images"].items())
     {
         const std::string name = file.get<std::string>();

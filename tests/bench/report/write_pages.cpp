@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
 
 #include "bench/report/report_page.h"
@@ -74,6 +75,30 @@ Json knownPixels(const std::filesystem::path& folder, Json results)
     return results;
 }
 
+/// Ours is the worst in everything, and half as bright as the reference and its opponents.
+Json losing(const std::filesystem::path& folder, Json results)
+{
+    constexpr int width = 8, height = 4;
+    for (const auto& [name, value] : {std::pair("half", 0.5f), std::pair("whole", 1.0f)})
+        writeHalves(folder / fmt::format("images/{}.half", name), width, height,
+                    std::vector<uint16_t>(3 * width * height, glm::packHalf1x16(value)));
+    const Json right = {{"beauty", "images/whole.half"}};
+    Json& scene = results["scenes"][0];
+    scene["width"] = width;
+    scene["height"] = height;
+    for (Json& point : scene["points"])
+        if (point.contains("images")) point["images"] = right;
+    scene["reference"]["images"] = right;
+    Json& ours = scene["points"][0];
+    ours["images"]["beauty"] = "images/half.half";
+    ours["rays"]["right_1"] = 0.9;
+    ours["error"]["beauty"]["flip"] = 0.5;
+    ours["error"]["diffuse"]["mean"] = 0.5;
+    ours["frame_ms"]["median"] = 1000.0;
+    ours["bytes"]["total"] = 9e8;
+    return results;
+}
+
 bool write(const std::filesystem::path& folder, const Json& results)
 {
     const Status done = writeReportPage(results, folder);
@@ -101,6 +126,7 @@ int main(int count, char** arguments)
     done = write(folder / "names", nastyNames(madeUp("names", {}))) && done;
     done = write(folder / "missing", missingParts(madeUp("missing", {}))) && done;
     done = write(folder / "known", knownPixels(folder / "known", madeUp("known", {.scenes = 1, .points = 1}))) && done;
+    done = write(folder / "losing", losing(folder / "losing", madeUp("losing", {.scenes = 1}))) && done;
     done = write(folder / "empty", nothing) && done;
     done = write(folder / "schema", wrongSchema) && done;
     return done ? 0 : 1;

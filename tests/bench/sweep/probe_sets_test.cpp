@@ -25,6 +25,37 @@ TEST(ProbeSetName, TellsSetsApart)
     EXPECT_EQ(probeSetName(asked("ours-grid", "grid", 64)), "grid-64");
     EXPECT_EQ(probeSetName(asked("b0plus", "grid", 64)), "grid-64");
     EXPECT_EQ(probeSetName(asked("b0", "grid", 64)), "grid2-64");
+    EXPECT_EQ(probeSetName(asked("ddgi", "grid", 64)), "grid-ddgi-64"); // chosen by its light
+    EXPECT_EQ(probeSetName(asked("ddgi-placed", "optimised", 64)), "optimised-64");
+}
+
+// Of all shapes and poses the one that is judged best, whatever the judge likes; its errors are passed on.
+TEST(PlaceFor, TakesTheGridThatItsJudgeFindsBest)
+{
+    const Scene scene = *makeBuiltinScene("cornell");
+    const PointSettings settings = asked("ours-grid", "grid", 27);
+    std::vector<ProbeGrid> seen;
+    const auto taken = [&](const auto& wrongOf)
+    {
+        seen.clear();
+        auto made = placeFor(scene, settings, {},
+                             [&](const ProbeGrid& grid) -> Result<double>
+                             {
+                                 seen.push_back(grid);
+                                 return wrongOf(grid);
+                             });
+        EXPECT_TRUE(made.ok());
+        return *made->set.grid;
+    };
+    const ProbeGrid widest = taken([](const ProbeGrid& grid) { return -double(grid.step.x * float(grid.count.x - 1)); });
+    ASSERT_GT(seen.size(), 3u);
+    for (const ProbeGrid& grid : seen)
+        EXPECT_LE(grid.step.x * float(grid.count.x - 1), widest.step.x * float(widest.count.x - 1) + 1e-5f);
+    const ProbeGrid narrowest = taken([](const ProbeGrid& grid) { return double(grid.step.x * float(grid.count.x - 1)); });
+    EXPECT_LT(narrowest.step.x * float(narrowest.count.x - 1), 0.9f * widest.step.x * float(widest.count.x - 1));
+    const auto failed = placeFor(scene, settings, {}, [](const ProbeGrid&) -> Result<double> { return Error{ErrorCode::outOfMemory, "no room"}; });
+    ASSERT_FALSE(failed.ok());
+    EXPECT_EQ(failed.error().message, "no room");
 }
 
 TEST(PlaceFor, MakesTheGridThatTheMethodNeedsAndNamesWhatItDoesNotKnow)

@@ -111,6 +111,71 @@ TEST_F(SurfaceBake, EachBounceInASphereIsTheAlbedosShareOfTheOneBefore)
         }
 }
 
+// Octahedral maps, which hold no surface light, take that of cube faces: every texel of a sphere about a point light sends its first light
+// over 1 - albedo, and an emitting sphere its emission over that.
+TEST_F(SurfaceBake, OctahedralMapsReflectTheLightThatIsLent)
+{
+    constexpr float kAlbedo = 0.6f, kRadius = 2.0f, kIntensity = 8.0f;
+    for (const bool glows : {false, true})
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        const uint32_t white = mesh.material("white", vec3(test::RoughModel::baseColorOf(kAlbedo)));
+        if (glows)
+            scene.materials[white].emission = vec3(1.0f);
+        else
+            scene.lights.push_back(pointLight(kIntensity));
+        mesh.sphere(vec3(0.0f), kRadius, 64, 32, white);
+        const double first = glows ? 1.0 : kAlbedo * kIntensity / (std::numbers::pi * kRadius * kRadius);
+        const TriangleRays rays = std::move(*TriangleRays::build(scene));
+        BakeSettings settings;
+        settings.resolution = 80; // of cube faces 96
+        settings.chart = gpu::kChartOctahedral;
+        settings.surfaceTexels = 26;
+        settings.surfaceRefined = 0.0f;
+        settings.octree.voxels = 16;
+        settings.bounces = 32;
+        settings.converged = 0.0005f;
+        settings.rays = &rays;
+        const std::vector<vec3> probes{vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)};
+        const auto light = bakeLightField(device.host(), scene, probes, lendingBake(settings), {}, report);
+        ASSERT_TRUE(light) << light.error().message;
+        EXPECT_EQ(light->info.chart, gpu::kChartCube);
+        settings.light = &*light;
+        const auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        ASSERT_TRUE(field) << field.error().message;
+        EXPECT_EQ(field->info.chart, gpu::kChartOctahedral);
+        EXPECT_TRUE(field->surfaceLight.empty());
+        Text text(*field, {});
+        std::vector<double> sent;
+        for (const uint32_t word : field->radiance) sent.push_back(text.unpackRadiance(word).g);
+        const Spread found = spreadOf(sent);
+        EXPECT_NEAR(found.mean, first / (1.0 - kAlbedo), 0.01 * first / (1.0 - kAlbedo)) << (glows ? "emitter" : "point light");
+        EXPECT_LT(found.worst, 0.08) << (glows ? "emitter" : "point light");
+    }
+}
+
+TEST_F(SurfaceBake, LightOfOtherProbesOrWithoutSurfacesIsNotLent)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("white", vec3(0.5f)));
+    const FieldData light = bake(scene, {vec3(0.1f)}, 0), without = bake(scene, {vec3(0.1f)}, 0, 0);
+    BakeSettings settings;
+    settings.resolution = 64;
+    settings.chart = gpu::kChartOctahedral;
+    const auto complaint = [&](const FieldData& lender, std::vector<vec3> probes)
+    {
+        settings.light = &lender;
+        const auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        return field ? "baked" : field.error().message;
+    };
+    EXPECT_NE(complaint(light, {vec3(0.1f), vec3(0.2f)}).find("has 1 probes, not the 2"), std::string::npos);
+    EXPECT_NE(complaint(light, {vec3(0.2f)}).find("at the same places"), std::string::npos);
+    EXPECT_NE(complaint(without, {vec3(0.1f)}).find("holds no surface light"), std::string::npos);
+    EXPECT_EQ(complaint(light, {vec3(0.1f)}), "baked");
+}
+
 // Under a sky of radiance 1 a plate gathers 1 at every point of its upper side.
 TEST_F(SurfaceBake, APlateUnderTheSkyGathersTheSky)
 {
