@@ -2,18 +2,16 @@
 import { h, section, select } from "./dom";
 import { figures } from "./figures";
 import { counted, kNone, ratio } from "./format";
-import { glyph, type MethodStyle } from "./methods";
-import { isNumber, nameOf, points, type Equal, type Point, type Price, type Scene } from "./results";
+import { glyph, methodName, titleOf, type MethodStyle } from "./methods";
+import { outcomeOf } from "./outcome";
+import { isNumber, points, type Equal, type Point, type Price, type Scene } from "./results";
 import type { Store } from "./store";
 import { table, type Column } from "./table";
-
-const kEven = 0.03; // a ratio within it of 1 is neither a win nor a loss
 
 /** Ours / theirs, lower is better; the arrow says it without colour. */
 function verdict(value: unknown): HTMLElement | string {
     if (!isNumber(value)) return ratio(value);
-    const even = Math.abs(value - 1) <= kEven;
-    const kind = even ? "even" : value < 1 ? "win" : "loss";
+    const kind = outcomeOf(value);
     const arrow = { even: "=", win: "▼", loss: "▲" }[kind];
     const said = { even: "as much", win: "less", loss: "more" }[kind];
     return h(
@@ -92,7 +90,7 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
     const byId = new Map(points(scene).map((point) => [point.id, point]));
     const nameFor = (id: string | null, none: string): string => {
         const point: Point | undefined = byId.get(id ?? "");
-        return point ? `${point.method}, ${nameOf(point)}` : (id ?? none);
+        return point ? titleOf(point) : (id ?? none);
     };
     const pointCell = (id: string | null, none = kNone): Node | string => {
         const point = byId.get(id ?? "");
@@ -161,7 +159,7 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
                   [
                       ["At equal", (row) => row.what],
                       ["Judged by", errorName],
-                      ["Theirs", (row) => row.method ?? byId.get(row.theirs ?? "")?.method ?? ""],
+                      ["Theirs", (row) => methodName(row.method ?? byId.get(row.theirs ?? "")?.method ?? "")],
                   ],
                   (row) => row.ours === null,
               )
@@ -182,7 +180,7 @@ export function analysisSection(scene: Scene, styles: Map<string, MethodStyle>, 
                       h(
                           "li",
                           {},
-                          byId.has(one.id ?? "") ? pointCell(one.id ?? null) : h("strong", {}, glyph(styles.get(one.method)), one.method),
+                          byId.has(one.id ?? "") ? pointCell(one.id ?? null) : h("strong", {}, glyph(styles.get(one.method)), methodName(one.method)),
                           h("span", {}, one.sentence),
                       ),
                   ),

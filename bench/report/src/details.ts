@@ -2,8 +2,8 @@
 import { h } from "./dom";
 import { figures, withUnit } from "./figures";
 import { number, plain } from "./format";
-import { glyph, type MethodStyle } from "./methods";
-import { imagesOf, isNumber, nameOf } from "./results";
+import { glyph, titleOf, type MethodStyle } from "./methods";
+import { imagesOf, isNumber } from "./results";
 import type { Store } from "./store";
 
 function block(title: string, rows: [string, string][]): HTMLElement | null {
@@ -34,7 +34,7 @@ export function details(styles: Map<string, MethodStyle>, store: Store): HTMLEle
                 "div",
                 { class: "details-head" },
                 glyph(styles.get(point.method)),
-                h("h3", {}, `${point.method}, ${nameOf(point)}`),
+                h("h3", {}, titleOf(point)),
                 h("code", { class: "clip", title: point.id }, point.id),
                 point.clock === "cpu" ? h("span", { class: "note" }, "times of the CPU") : null,
                 Object.keys(imagesOf(point)).length > 0

@@ -1,8 +1,9 @@
 // Which images a scene has, and how one is turned into the pixels of a canvas and into the text of one pixel.
 import { categorical, kNoProbe, kNotANumber, sequential, type Colour } from "./colour_maps";
 import { number } from "./format";
+import { methodName, titleOf } from "./methods";
 import { halfValues, kNoNumber, loadImage, type ReportImage } from "./report_image";
-import { imagesOf, nameOf, points, type Point, type Scene } from "./results";
+import { imagesOf, points, type Point, type Scene } from "./results";
 
 export interface Layer {
     key: string;
@@ -27,15 +28,19 @@ export interface Entry {
     images: Record<string, string>;
 }
 
+export function referenceOf(scene: Scene): Entry {
+    return { label: "reference", point: null, images: imagesOf(scene.reference) };
+}
+
 /** Ours, then the others, then the reference. */
 export function entriesOf(scene: Scene): Entry[] {
     const pictured = points(scene).filter((point) => Object.keys(imagesOf(point)).length > 0);
     pictured.sort((a, b) => Number(b.method === "ours") - Number(a.method === "ours"));
     const several = (method: string): boolean => pictured.filter((point) => point.method === method).length > 1;
-    const label = (point: Point): string => (several(point.method) ? `${point.method}, ${nameOf(point)}` : point.method);
+    const label = (point: Point): string => (several(point.method) ? titleOf(point) : methodName(point.method));
     const shown = pictured.map((point): Entry => ({ label: label(point), point, images: imagesOf(point) }));
-    const truth = imagesOf(scene.reference);
-    return Object.keys(truth).length > 0 ? [...shown, { label: "reference", point: null, images: truth }] : shown;
+    const truth = referenceOf(scene);
+    return Object.keys(truth.images).length > 0 ? [...shown, truth] : shown;
 }
 
 export interface Loaded {
@@ -99,6 +104,12 @@ export function autoExposure(image: ReportImage): number {
         ++count;
     }
     return count ? 0.18 / Math.exp(sum / count) : 1;
+}
+
+/** One exposure for all that are seen together: the reference's, else that of the first with colours. */
+export function sharedExposure(reference: Loaded | null, others: Loaded[]): number {
+    const base = reference?.image ?? others.find((one) => one.image?.halves)?.image;
+    return base ? autoExposure(base) : 1;
 }
 
 /** Root of the relative squared error, (a - b)^2 / (b^2 + 0.01) averaged over the channels: relMSE before its mean over pixels. */

@@ -3,12 +3,12 @@ import { onDrag } from "./drag";
 import { h, perFrame, section, segments, toggle, type Segments } from "./dom";
 import { number } from "./format";
 import {
-    autoExposure,
     entriesOf,
     kLayers,
     load,
     paint,
     pixelText,
+    sharedExposure,
     toneTable,
     topOf,
     type Entry,
@@ -198,8 +198,7 @@ export function imagesSection(scene: Scene, store: Store): HTMLElement {
         const truthLoaded = truth && layer.colours ? await load(truth, layer, undefined) : null;
         const loaded = await Promise.all(wanted);
         if (mine !== turn) return; // something else was chosen meanwhile
-        const base = truthLoaded?.image ?? loaded.find((one) => one.image?.halves)?.image;
-        auto = base && layer.colours ? autoExposure(base) : 1;
+        auto = layer.colours ? sharedExposure(truthLoaded, loaded) : 1;
         shown = loaded.map((one) => ({ loaded: one, canvas: null }));
         repaint();
     }

@@ -1,10 +1,12 @@
 // The page of `sconce bench`: what is the same for every scene at the top, then the parts of the chosen scene.
 import { analysisSection } from "./analysis_section";
 import { h, section, segments } from "./dom";
+import { openFoldsOnPaper, reveal } from "./fold";
 import { counted } from "./format";
 import { imagesSection } from "./images_section";
 import { machineSection } from "./machine_section";
 import { methodStyles } from "./methods";
+import { openingSection } from "./opening_section";
 import { planSection } from "./plan_section";
 import { plotsSection } from "./plots_section";
 import { pointsSection } from "./points_section";
@@ -13,6 +15,10 @@ import { Store } from "./store";
 import { onSystemTheme, readAddress, setTheme, writeAddress, type Theme } from "./theme";
 import { hideTooltip } from "./tooltip";
 
+function answersSection(answers: string[]): HTMLElement {
+    return section("answers", "Over all scenes", h("ul", { class: "answers" }, ...answers.map((answer) => h("li", {}, answer))));
+}
+
 function build(page: HTMLElement, results: Results): void {
     const scenes = results.scenes ?? [];
     const styles = methodStyles([...new Set(scenes.flatMap(methodsOf))]);
@@ -20,10 +26,14 @@ function build(page: HTMLElement, results: Results): void {
     const body = h("div", { id: "scene" });
     const nav = h("nav", { "aria-label": "Parts of this page" });
 
+    const answers = results.answers ?? [];
+
     const showScene = (scene: Scene): void => {
         hideTooltip();
         store = new Store();
         const parts: [string, HTMLElement][] = [
+            ["In short", openingSection(scene)],
+            ...(answers.length > 0 ? [["All scenes", answersSection(answers)] as [string, HTMLElement]] : []),
             ["Costs", plotsSection(scene, styles, store)],
             ["Comparison", analysisSection(scene, styles, store)],
             ["Images", imagesSection(scene, store)],
@@ -48,7 +58,7 @@ function build(page: HTMLElement, results: Results): void {
             ...parts.map(([, part]) => part),
         );
         const links = parts.map(([name, part]) =>
-            h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), part.scrollIntoView()) }, name),
+            h("a", { href: `#${part.id}`, click: (event: MouseEvent) => (event.preventDefault(), reveal(part)) }, name),
         );
         nav.replaceChildren(...links);
     };
@@ -84,7 +94,6 @@ function build(page: HTMLElement, results: Results): void {
             showScene(scene);
         },
     );
-    const answers = results.answers ?? [];
     const header = h(
         "header",
         {},
@@ -97,13 +106,17 @@ function build(page: HTMLElement, results: Results): void {
         h(
             "main",
             {},
-            answers.length > 0
-                ? section("answers", "In short", h("ul", { class: "answers" }, ...answers.map((answer) => h("li", {}, answer))))
-                : null,
             first ? body : h("p", { class: "note" }, "This run has no scenes."),
         ),
     );
     if (first) showScene(first);
+    const followAddress = (): void => {
+        const part = [...body.children].find((one) => `#${one.id}` === location.hash);
+        if (part instanceof HTMLElement) reveal(part);
+    };
+    addEventListener("hashchange", followAddress);
+    followAddress();
+    openFoldsOnPaper();
 }
 
 function fail(page: HTMLElement, problem: unknown): void {

@@ -1,7 +1,21 @@
-// A colour and a shape for each method: the same everywhere, told apart without colour, too.
+// A name, a colour and a shape for each method: the same everywhere, told apart without colour, too.
 import { svg } from "./dom";
+import { nameOf, type Point } from "./results";
 
-const kKnown = ["ours", "ours-grid", "b0plus", "b0plus-octree", "b0", "wang", "path tracer", "ddgi", "ddgi-placed", "sh-grid", "path tracer filtered"];
+const kKnown: [string, string][] = [
+    ["ours", "Sconce"],
+    ["ours-grid", "Sconce on a grid"],
+    ["b0plus", "B0+"],
+    ["b0plus-octree", "B0+ on Sconce's probes"],
+    ["b0", "B0"],
+    ["wang", "W'"],
+    ["path tracer", "path tracer"],
+    ["ddgi", "DDGI"],
+    ["ddgi-placed", "DDGI on Sconce's probes"],
+    ["sh-grid", "SH grid"],
+    ["path tracer filtered", "filtered path tracer"],
+];
+const kNames = new Map(kKnown);
 const kColours = 11; // --method-0 ... in style.css
 
 // Outlines in a box from -1 to 1.
@@ -24,9 +38,24 @@ export interface MethodStyle {
     outline: string; // path data
 }
 
+/** As a person would call it; of one that isn't known, as the results do. */
+export function methodName(method: string): string {
+    return kNames.get(method) ?? method;
+}
+
+/** A point's method and setting. */
+export function titleOf(point: Point): string {
+    return `${methodName(point.method)}, ${nameOf(point)}`;
+}
+
+/** Whether it is another's way to do what ours does. A path tracer isn't: given paths enough, it is the reference. */
+export function isOpponent(method: string): boolean {
+    return !["ours", "ours-grid", "path tracer", "path tracer filtered"].includes(method);
+}
+
 /** Styles of all methods of a run, the known ones always alike. */
 export function methodStyles(methods: string[]): Map<string, MethodStyle> {
-    const order = [...kKnown, ...methods.filter((method) => !kKnown.includes(method))];
+    const order = [...new Set([...kNames.keys(), ...methods])];
     const style = (index: number): MethodStyle => ({
         colour: `--method-${index % kColours}`,
         outline: kShapes[index % kShapes.length] as string,

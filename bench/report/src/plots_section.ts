@@ -2,7 +2,7 @@
 import { details } from "./details";
 import { h, section, select } from "./dom";
 import { errorFigures, figure, measured, type Figure } from "./figures";
-import { glyph, type MethodStyle } from "./methods";
+import { glyph, methodName, type MethodStyle } from "./methods";
 import { isNumber, methodsOf, points, type Scene } from "./results";
 import { scatter } from "./scatter";
 import type { Store } from "./store";
@@ -30,9 +30,9 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
     for (const method of methodsOf(scene)) {
         const button = h(
             "button",
-            { type: "button", "aria-pressed": "true", title: `Show or hide ${method}`, click: () => store.toggle(method) },
+            { type: "button", "aria-pressed": "true", title: `Show or hide ${methodName(method)}`, click: () => store.toggle(method) },
             glyph(styles.get(method)),
-            h("span", { class: "clip" }, method),
+            h("span", { class: "clip" }, methodName(method)),
         );
         store.on(["methods"], () => button.setAttribute("aria-pressed", String(!store.hidden.has(method))));
         legend.append(button);

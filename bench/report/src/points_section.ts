@@ -1,8 +1,9 @@
 // Every point that was measured, to sort and to filter.
 import { h, section, segments } from "./dom";
 import { figure, figures, headOf, measured, type Figure } from "./figures";
+import { fold } from "./fold";
 import { counted, plain } from "./format";
-import { glyph, type MethodStyle } from "./methods";
+import { glyph, methodName, titleOf, type MethodStyle } from "./methods";
 import { nameOf, points, type Point, type Scene } from "./results";
 import type { Store } from "./store";
 import { table, type Column } from "./table";
@@ -49,10 +50,10 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
             "button",
             { type: "button", class: "link", title: point.id, click: (event: MouseEvent) => (event.stopPropagation(), store.pick(point)) },
             glyph(styles.get(point.method)),
-            h("span", { class: "clip" }, point.method),
+            h("span", { class: "clip" }, methodName(point.method)),
         );
     const first: Column<Point>[] = [
-        { head: "method", sortBy: (point) => point.method, show: pickButton },
+        { head: "method", sortBy: (point) => methodName(point.method), show: pickButton },
         {
             head: "setting",
             title: "The knob that this point varies from the default",
@@ -86,16 +87,18 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
 
     const filter = h("input", { type: "search", placeholder: "e.g. ours probes", size: 18, input: () => update() });
     const count = h("span", { class: "note", role: "status" });
+    const summary = h("summary", {});
     const update = (): void => {
         const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
         const rows = all.filter((point) => {
-            const text = `${point.id} ${point.method} ${nameOf(point)} ${point.wrong ? "wrong" : ""} ${Object.entries(point.settings ?? {})
+            const text = `${point.id} ${titleOf(point)} ${point.wrong ? "wrong" : ""} ${Object.entries(point.settings ?? {})
                 .flat()
                 .join(" ")}`.toLowerCase();
             return store.visible(point) && words.every((word) => text.includes(word));
         });
         grid.setRows(rows);
         count.textContent = `${rows.length} of ${counted(all.length, "point")}`;
+        summary.textContent = `Table of ${counted(rows.length, "row")}, one a point`;
         mark();
     };
     const mark = (): void => {
@@ -103,7 +106,6 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
         if (store.picked) grid.rowOf(store.picked)?.classList.add("picked");
     };
     store.on(["methods"], update);
-    store.on(["pick"], mark);
     update();
 
     const choice = segments(
@@ -115,10 +117,12 @@ export function pointsSection(scene: Scene, styles: Map<string, MethodStyle>, st
             mark();
         },
     );
-    return section(
-        "points",
-        "Every point",
-        h("div", { class: "controls" }, choice.element, h("label", { class: "field" }, h("span", {}, "Filter"), filter), count),
-        grid.element,
-    );
+    const field = h("label", { class: "field" }, h("span", {}, "Filter"), filter);
+    const controls = h("div", { class: "controls" }, choice.element, field, count);
+    const folded = fold(summary, controls, grid.element);
+    store.on(["pick"], () => {
+        mark();
+        if (store.picked) folded.open = true; // so that its row is seen
+    });
+    return section("points", "Every point", folded);
 }

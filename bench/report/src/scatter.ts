@@ -3,9 +3,9 @@ import uPlot from "uplot";
 import { h, perFrame } from "./dom";
 import { counted, number } from "./format";
 import { withUnit, type Figure } from "./figures";
-import type { MethodStyle } from "./methods";
+import { titleOf, type MethodStyle } from "./methods";
 import { paretoFront, type Placed } from "./pareto";
-import { isNumber, nameOf, type Point } from "./results";
+import { isNumber, type Point } from "./results";
 import type { Store } from "./store";
 import { colourOf } from "./theme";
 import { logTicks, paddedRange } from "./ticks";
@@ -345,7 +345,7 @@ export function tooltipOf(point: Point, ...shown: Figure[]): Node[] {
         .map(([name, value]) => `${name} ${String(value)}`)
         .join(" · ");
     return [
-        h("strong", {}, `${point.method}, ${nameOf(point)}`),
+        h("strong", {}, titleOf(point)),
         list,
         h("p", { class: "note" }, settings || "no settings recorded"),
         ...(point.wrong ? [h("p", { class: "wrong" }, `Wrong: ${point.wrong}`)] : []),

@@ -138,7 +138,7 @@ test("the first pictures have one exposure, and sentences say that ours loses", 
     [0.5, 1, 1].forEach((radiance, index) => assert.ok(Math.abs(tones[index] - toneOf(radiance)) <= 1.5, `${tones} at ${index}`));
     assert.deepEqual(await said(), [
         "With 54 probes each, 10.00 % of Sconce's glossy rays are wrong, 3.24 % with W': Sconce loses by a factor of 3.09.",
-        "Sconce's picture is off by FLIP 0.500, 0.0935 with W': Sconce loses by a factor of 5.35; its diffuse light is 50 % too dark, 3.6 % too dark with W': Sconce loses.",
+        "Sconce's picture is off by FLIP 0.500, 0.0935 with W': Sconce loses by a factor of 5.35; its diffuse light by 0.900 (50 % too dark), 0.0450 (0.50 % too dark) with B0+: Sconce loses by a factor of 20.0.",
         "Sconce's frame takes 1000 ms, 56.0 ms with W': Sconce loses by a factor of 17.9; its light field takes 900 MB, 135 MB with W': Sconce loses by a factor of 6.67; half as many wrong rays would cost 1.15× the frame time and 3.22× the memory, at the rate of probes 128.",
     ]);
     noFaults();
@@ -169,8 +169,8 @@ test("the folded table opens for a link, an address, a picked point and paper, a
     assert.equal(await page.locator("#points summary").innerText(), "Table of 11 rows, one a point");
     await openTable();
     assert.equal(await folded(), true);
-    await page.evaluate(() => (location.hash = "#points"));
-    await page.waitForFunction(() => document.querySelector("#points details").open);
+    await page.evaluate(() => new Promise((done) => (addEventListener("hashchange", done), (location.hash = "#points"))));
+    assert.equal(await folded(), false);
     await page.reload();
     assert.equal(await folded(), false, "by the address from the start");
     noFaults();
@@ -188,6 +188,10 @@ test("the folded table opens for a link, an address, a picked point and paper, a
     await page.pdf();
     assert.equal(await page.evaluate(() => window.onPaper), true);
     assert.equal(await folded(), true, "and closes again");
+    await openTable();
+    await page.emulateMedia({ media: "print" });
+    const cut = await page.locator("#points .scroll").evaluate((one) => one.scrollHeight - one.clientHeight);
+    assert.ok(cut <= 0, `${cut} pixels of the table don't come to paper`);
     noFaults();
 });
 

@@ -93,6 +93,7 @@ Json losing(const std::filesystem::path& folder, Json results)
     ours["images"]["beauty"] = "images/half.half";
     ours["rays"]["right_1"] = 0.9;
     ours["error"]["beauty"]["flip"] = 0.5;
+    ours["error"]["diffuse"]["flip"] = 0.9;
     ours["error"]["diffuse"]["mean"] = 0.5;
     ours["frame_ms"]["median"] = 1000.0;
     ours["bytes"]["total"] = 9e8;
