@@ -191,8 +191,9 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
     bake.resolution = kJudgedMaps;
     bake.bounces = bake.surfaceTexels = 0;
     bake.radiance = bake.prefiltered = false;
+    bake.scene.light = {.emitterSamples = 0, .skySamples = 0, .sunShadow = knobs::sunShadow.least, .pointShadow = knobs::pointShadow.least};
     bake.grid = grid;
-    BakeReport report;
+    BakeReport report; // rays ask where surfaces are, not how they are lit
     auto field = bakeLightField(gpu.host, desc.scene, positions, bake, {}, report);
     if (!field) return field.error();
     auto tracer = TracedMethod::create(gpu, std::move(*field), {.quality = settings.quality}, "grid");
