@@ -50,6 +50,7 @@ ImageSet lightLayers(const RenderedFrame& frame)
     addColours(images, "beauty", frame.beauty);
     addColours(images, "diffuse_indirect", frame.diffuseIndirect);
     addColours(images, "glossy_indirect", frame.glossyIndirect);
+    images.add("depth", 1).pixels = frame.depth;
     return images;
 }
 

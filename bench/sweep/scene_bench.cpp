@@ -532,6 +532,7 @@ Result<Json> SceneBench::errorsOf(const ImageSet& picture) const
         CompareSettings settings;
         settings.layer = layer;
         settings.psnr = false;
+        settings.sameSurface = true; // what is blended is there by lot: elsewhere a method is judged by another surface's light
         auto compared = compareImages(picture, referenceImages, settings);
         if (!compared) return compared.error();
         errors[name] = {{"mse", numberOrNull(*compared->mse)},
@@ -566,7 +567,9 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
     json["clock"] = point.settings.pathTraced() || software() ? "cpu" : "device";
     if (point.settings.pathTraced() && !live.renderer)
     {
-        auto picture = renderReference(*truth, pathSettings(point), progress);
+        ReferenceSettings paths = pathSettings(point);
+        paths.guides = true; // which of them tells what surface is seen
+        auto picture = renderReference(*truth, paths, progress);
         if (!picture) return picture.error();
         auto errors = errorsOf(picture->images);
         if (!errors) return errors.error();

@@ -71,10 +71,13 @@ TEST(PictureFiles, LayersOfAFrameAreThoseOfAReference)
     frame.beauty = {{1, 2, 3}, {4, 5, 6}};
     frame.diffuseIndirect = {{7, 8, 9}, {10, 11, 12}};
     frame.glossyIndirect = {{13, 14, 15}, {16, 17, 18}};
+    frame.depth = {0.5f, 0.0f};
     const ImageSet images = lightLayers(frame);
     EXPECT_EQ(images.width, 2u);
     EXPECT_EQ(images.height, 1u);
-    ASSERT_EQ(images.layers.size(), 3u);
+    ASSERT_EQ(images.layers.size(), 4u);
+    ASSERT_NE(images.find("depth"), nullptr);
+    EXPECT_EQ(images.find("depth")->pixels, (std::vector<float>{0.5f, 0.0f}));
     float next = 1.0f;
     for (const char* name : {"beauty", "diffuse_indirect", "glossy_indirect"})
     {

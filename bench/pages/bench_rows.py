@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""Makes the pages' result files of what `sconce bench` and `sconce_ray_accuracy` measured.
+
+    python3 bench/pages/bench_rows.py methods RESULTS.json...   bench/results/scene_methods.json and scene_targets.json, a scene of each run
+    python3 bench/pages/bench_rows.py knobs RESULTS.json        bench/results/knobs.json: one scene's knobs
+    bench/pages/leaks_sheet.sh                                  bench/results/walls.json
+    bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and scene_rays.json
+
+The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
+"""
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+NAMES = {"ours": "Sconce", "ours-grid": "Sconce's tracer, grid", "b0": "B0", "b0plus": "B0+", "b0plus-octree": "B0+, our lists", "wang": "W', our lists",
+         "ddgi": "DDGI", "ddgi-placed": "DDGI, our probes", "sh-grid": "SH grid", "path tracer": "path tracer", "path tracer filtered": "path tracer, filtered"}
+# Label, asked: from the analysis (what is held equal, error, cost, ratio), or of the default points, at equal probes (a figure).
+TARGETS = [
+    ("equal glossy relMSE: frame time", "0.25", ("glossy.relmse", "frame_ms", "time")),
+    ("as few wrong rays: trace time", "0.25", ("wrong_rays", "trace_ms", "trace")),
+    ("equal probes: wrong rays", "0.25", "wrong"),
+    ("equal probes: glossy relMSE", "0.5", "glossy_relmse"),
+    ("equal probes: diffuse relMSE", "0.5", "diffuse_relmse"),
+    ("equal glossy relMSE: memory", "0.5", ("glossy.relmse", "bytes", "memory")),
+]
+NAMED = {"cornell_glossy.glb": "cornell_mcguire glossy", "zdm2.glb": "map_zdm2"}  # files whose names say too little
+PATHS = ("path tracer", "path tracer filtered")
+
+
+def slug(text):
+    return "".join(c if c.isalnum() else "_" for c in text.lower()).strip("_")
+
+
+def of(point, path, scale=1.0, digits=4):
+    """A figure of a point as text; empty where it has none."""
+    for key in path.split("."):
+        point = point.get(key) if isinstance(point, dict) else None
+    return "" if point is None else f"{scale * point:.{digits}f}"
+
+
+def figures(point):
+    rays = point.get("rays", {})
+    wrong = {f"wrong_{end}": {"x": 1.0 - rays[f"right_{end}"]} if rays else {} for end in ("1", "02")}
+    row = {"probes": str(point.get("probes", "")), "wrong": of(wrong["wrong_1"], "x", 100, 2), "wrong_02": of(wrong["wrong_02"], "x", 100, 2),
+           "unresolved": of(point, "rays.unresolved", 100, 2), "reads": of(point, "rays.reads_mean", 1, 1), "trace_ms": of(point, "trace_ms.median", 1, 1),
+           "frame_ms": of(point, "frame_ms.median", 1, 0), "mb": of(point, "bytes.total", 1e-6, 1), "bake_s": of(point, "bake_s", 1, 0)}
+    for term in ("beauty", "diffuse", "glossy"):
+        row |= {f"{term}_relmse": of(point, f"error.{term}.relmse"), f"{term}_flip": of(point, f"error.{term}.flip", 1, 3),
+                f"{term}_mean": of(point, f"error.{term}.mean", 1, 3)}
+    if point.get("wrong"):
+        row["wrong_picture"] = point["wrong"]
+    return row
+
+
+def label(point):
+    name = NAMES[point["method"]]
+    return name if point["knob"] == "default" else f"{name}, {point['value']} {point['knob']}"
+
+
+def scenes_of(files):
+    scenes, commands = {}, []
+    for file in files:
+        results = json.loads(Path(file).read_text())
+        commands += [" ".join(["sconce", *re.sub(r" -o \S+", "", command).split()[1:]]) for command in results["commands"] if command not in commands]
+        for scene in results["scenes"]:
+            if scene.get("points"):
+                scenes[NAMED.get(scene["source"], scene["name"])] = scene
+    return scenes, commands
+
+
+def references(name, scene):
+    reference = scene["reference"]
+    unsure = max((point["error"][term]["relmse_unsure"] for point in scene["points"] if "error" in point for term in ("diffuse",) if term in point["error"]
+                  and point["method"] == "ours"), default=0.0)
+    return f"{name}: {reference['spp']} paths, {reference['bounces']} bounces, of our diffuse relMSE unsure {unsure:.5f}"
+
+
+def write(name, what, commands, notes, rows):
+    commit = subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    lines = ",\n".join(f"  {json.dumps(key)}: {json.dumps(row)}" for key, row in rows.items())
+    head = {"what": what, "command": "; ".join(commands), "commit": commit, "machine": "Mesa's software Vulkan, llvmpipe, LLVM 15, 2 cores", "notes": notes}
+    text = json.dumps(head, indent=1)[:-2] + ',\n "rows": {\n' + lines + "\n }\n}\n"
+    json.loads(text)
+    (ROOT / "bench/results" / name).write_text(text)
+
+
+def hardest(scene, compared):
+    """(ratio ours / theirs, method) of the opponent that leaves us worst; the ratio is None where no setting of ours is as good."""
+    if isinstance(compared, str):
+        points = {point["method"]: figures(point)[compared] for point in scene["points"] if point["knob"] == "default"}
+        found = [(float(points["ours"]) / float(theirs), method) for method, theirs in points.items()
+                 if method not in ("ours", *PATHS) and theirs and float(theirs) > 0]
+        return max(found, default=(None, None))
+    error, cost, ratio = compared
+    entries = [entry for entry in scene["analysis"]["equal"]
+               if entry["what"] == "error" and entry["error_key"] == error and entry["cost_key"] == cost and entry["method"] not in PATHS]
+    out = [entry["method"] for entry in entries if entry["ours"] is None]
+    found = [(entry["ratio"][ratio], entry["method"]) for entry in entries if entry["ours"] and entry["ratio"].get(ratio) is not None]
+    return (None, out[0]) if out else max(found, default=(None, None))
+
+
+def targets(scenes):
+    rows = {}
+    for text, asked, compared in TARGETS:
+        rows[slug(text)] = row = {"label": text, "asked": asked}
+        for name, scene in scenes.items():
+            ratio, method = hardest(scene, compared)
+            row[slug(name)] = "" if method is None else f"{'out of reach' if ratio is None else f'{ratio:.2f}'} ({NAMES[method]})"
+    return rows
+
+
+def methods(files):
+    scenes, commands = scenes_of(files)
+    rows = {}
+    for name, scene in scenes.items():
+        for point in scene["points"]:
+            if point["knob"] == "default" or (point["knob"] == "paths" and point["value"] in ("1", "4", "16", "64")):
+                key = slug(point["method"]) + ("" if point["knob"] == "default" else f"_{point['value']}")
+                rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point)
+    notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
+             "times are CPU time of all threads divided by the cores; nothing else running"] + [references(name, scene) for name, scene in scenes.items()]
+    write("scene_methods.json", "Every method at its default in one run", commands, notes, rows)
+    write("scene_targets.json", "Targets: ours over the hardest opponent, which is named", commands, ["a ratio above the asked one is a missed target"],
+          targets(scenes))
+
+
+def over(value, base):
+    try:
+        return f"{float(value) / float(base):.2g}"
+    except (ValueError, ZeroDivisionError):
+        return ""
+
+
+PRICED = ("wrong", "reads", "trace_ms", "frame_ms", "mb", "glossy_relmse", "diffuse_relmse", "beauty_flip", "bake_s")
+
+
+def knobs(files):
+    """A row a value, and a row a knob, whose cells list its values'."""
+    scenes, commands = scenes_of(files)
+    name, scene = next(iter(scenes.items()))
+    ours = [point for point in scene["points"] if point["method"] == "ours" and "error" in point]
+    priced = lambda point: {key: value for key, value in figures(point).items() if key in PRICED}
+    default = priced(next(point for point in ours if point["knob"] == "default"))
+    rows, lists = {"default": {"label": "default"} | default}, {}
+    for point in ours:
+        if point["knob"] != "default":
+            own = priced(point)
+            row = {"label": f"{point['knob']} {point['value']}", "value": point["value"]} | own
+            row |= {f"{key}_times": over(value, default[key]) for key, value in own.items()}
+            rows[f"{slug(point['knob'])}_{slug(point['value'])}"] = row
+            lists.setdefault(point["knob"], []).append(row)
+    for knob, values in lists.items():
+        rows[slug(knob)] = {"label": knob} | {key: ", ".join(row[key] for row in values) for key in values[0] if key != "label"}
+    write("knobs.json", f"Our knobs on {name}, each alone against the default", commands,
+          ["`_times`: over the default's; a knob's row lists its values'", references(name, scene)], rows)
+
+
+KNOBS = {"opinion": "no second opinion (`opinion:0`)", "farBounds": "far bounds read (`farBounds:1`)", "ranked:2": "two ranked probes (`ranked:2`)",
+         "ranked:1": "one (`ranked:1`)"}
+
+
+def traced(entry, yardstick):
+    """A tracer's row of a race; times over the yardstick's."""
+    percent = lambda key: f"{100 * entry[key]:.2f}" if key in entry else "100" if key.startswith("right") else ""
+    reads = entry.get("distance_reads", {})
+    row = {key: percent(key) for key in ("right_1", "right_02", "right_1_unsure", "right_02_unsure", "false", "leak", "unresolved")}
+    row |= {"reads_mean": of(entry, "distance_reads.mean", 1, 1), "reads_95": str(reads.get("p95", "")), "reads_max": str(reads.get("max", "")),
+            "index_reads": of(entry, "index_reads_mean", 1, 1), "probes": str(entry.get("probes", "")), "mib_traced": of(entry, "trace_mib", 1, 2),
+            "mib_with_radiance": f"{entry['trace_mib'] + entry['radiance_mib']:.2f}" if "trace_mib" in entry else ""}
+    for order, runs in (("order", "coherent_ms"), ("shuffled", "incoherent_ms")):
+        row |= {f"ratio_{order}": f"{entry[runs]['median'] / yardstick[runs]['median']:.2f}", f"ms_{order}": of(entry, f"{runs}.median", 1, 0)}
+    return row
+
+
+def rays(arguments):
+    notes = ["200,000 glossy rays (GGX alpha 0.1 to 0.3) from 64 viewpoints: the cameras and points of the reachable space; truth by Embree",
+             "right: within that share of the scene's diagonal of the truth; shares in %, unsure: standard errors by viewpoint",
+             "cube faces of 208 and octahedral maps of 512 texels: equal memory; W' 512; grids in the better of two poses, plain and --fit-grid",
+             "ratio: trace time of 50,000 rays over that of B0+ with the same probes and lists, in picture order and shuffled; nothing else running"]
+    sponza, others = {}, {}
+    for count, at in zip(arguments[::2], arguments[1::2]):
+        name = "map_zdm2" if at.endswith("zdm2") else "cornell_mcguire glossy" if at.endswith("cornell_glossy") else Path(at).name
+        entries = json.loads(Path(at + ".race.json").read_text())
+        first = lambda tracer, field: next(entry for entry in entries if entry["tracer"] == tracer and entry.get("field", "").endswith(field))
+        yardstick = first("b0plus-octree", ".oct.sconce")
+        grid = max((first("b0plus", f".{pose}.sconce") for pose in ("fit", "plain")), key=lambda entry: entry["right_1"])
+        embree = next(entry for entry in entries if entry["tracer"] == "embree")
+        named = {"ours": (first("ours", ".ours.sconce"), "Sconce"), "b0plus_octree": (yardstick, "B0+, same probes and lists"),
+                 "b0plus_grid": (grid, f"B0+, grid of {grid['probes']}"), "embree": (embree, "Embree, both cores")}
+        if name == "Sponza":
+            named["wang"] = (first("wang", ".wang.sconce"), "W', same probes and lists")
+            for entry in entries:
+                for knob, text in KNOBS.items():
+                    if knob in entry["tracer"]:
+                        named[slug(knob)] = (entry, text)
+            sponza = {key: {"label": text} | traced(entry, yardstick) for key, (entry, text) in named.items()}
+        else:
+            others |= {f"{slug(name)}__{key}": {"label": f"{name}, {text}"} | traced(entry, yardstick) for key, (entry, text) in named.items()}
+    if sponza:
+        write("sponza_rays.json", "Tracers on Sponza, 54 probes, at equal memory", ["bench/pages/ray_table.sh"], notes, sponza)
+    if others:
+        write("scene_rays.json", "The tracer on other scenes, fields made as for Sponza", ["bench/pages/ray_table.sh"], notes, others)
+
+
+def walls(arguments):
+    rows = {}
+    for wall in ("1", "2", "5", "10", "20", "curtain"):
+        both, dark = (json.loads(Path(arguments[0], wall + end).read_text()) for end in (".json", ".right.json"))
+        rows[f"wall_{wall}"] = {"label": wall if wall == "curtain" else f"wall of {wall} cm", "relmse": f"{both['relmse']:.4f}", "flip": f"{both['flip']:.3f}",
+                                "dark_relmse": f"{dark['relmse']:.6f}", "dark_flip": f"{dark['flip']:.3f}", "dark_light": f"{dark['mean']:.3f}"}
+    write("walls.json", "Two rooms, one a hundred times darker, by what stands between them", ["bench/pages/leaks_sheet.sh"],
+          ["dark_light: the mean of the dark room's own picture, ours over the reference's"], rows)
+
+
+if __name__ == "__main__":
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls}
+    if len(sys.argv) < 3 or sys.argv[1] not in modes:
+        sys.exit(__doc__)
+    modes[sys.argv[1]](sys.argv[2:])
