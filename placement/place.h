@@ -77,8 +77,8 @@ struct PlaceReport
 /// Cost: sdf 5 to 60 s on two cores for 0.1 to 2 million triangles.
 Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, PlaceReport& report, const Progress& progress = {});
 
-/// The uniform grids that `fitGrid` chooses among: some shapes of about as many probes, at some distances from the bounds of the reachable space.
-/// For whoever knows a better judge than what their cells' corners see. Errors: as placeProbes().
+/// The uniform grids that `fitGrid` chooses among: some shapes of about as many probes, at some distances from the bounds of the reachable
+/// space. For whoever knows a better judge than what their cells' corners see. Errors: as placeProbes().
 Result<std::vector<ProbeGrid>> gridPoses(const Scene& scene, const PlaceSettings& settings, const Progress& progress = {});
 
 } // namespace sconce

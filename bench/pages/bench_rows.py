@@ -4,7 +4,7 @@
     python3 bench/pages/bench_rows.py methods RESULTS.json...   bench/results/scene_methods.json and scene_targets.json, a scene of each run
     python3 bench/pages/bench_rows.py knobs RESULTS.json        bench/results/knobs.json: one scene's knobs
     bench/pages/leaks_sheet.sh                                  bench/results/walls.json
-    bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and scene_rays.json
+    bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
 """
@@ -27,11 +27,12 @@ TARGETS = [
     ("equal glossy relMSE: memory", "0.5", ("glossy.relmse", "bytes", "memory")),
 ]
 NAMED = {"cornell_glossy.glb": "cornell_mcguire glossy", "zdm2.glb": "map_zdm2"}  # files whose names say too little
+SHORT = {"ours-grid": "own, grid", "b0plus-octree": "B0+, lists", "wang": "W'", "ddgi-placed": "DDGI, own probes"}  # in targets
 PATHS = ("path tracer", "path tracer filtered")
 
 
 def slug(text):
-    return "".join(c if c.isalnum() else "_" for c in text.lower()).strip("_")
+    return re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")
 
 
 def of(point, path, scale=1.0, digits=4):
@@ -87,16 +88,16 @@ def write(name, what, commands, notes, rows):
     (ROOT / "bench/results" / name).write_text(text)
 
 
-def hardest(scene, compared):
-    """(ratio ours / theirs, method) of the opponent that leaves us worst; the ratio is None where no setting of ours is as good."""
+def hardest(scene, compared, but):
+    """(ratio ours / theirs, method) of the opponent that leaves us worst, those of `but` left out; the ratio is None where no setting of ours is as good."""
     if isinstance(compared, str):
         points = {point["method"]: figures(point)[compared] for point in scene["points"] if point["knob"] == "default"}
         found = [(float(points["ours"]) / float(theirs), method) for method, theirs in points.items()
-                 if method not in ("ours", *PATHS) and theirs and float(theirs) > 0]
+                 if method not in ("ours", *PATHS, *but) and theirs and float(theirs) > 0]
         return max(found, default=(None, None))
     error, cost, ratio = compared
     entries = [entry for entry in scene["analysis"]["equal"]
-               if entry["what"] == "error" and entry["error_key"] == error and entry["cost_key"] == cost and entry["method"] not in PATHS]
+               if entry["what"] == "error" and entry["error_key"] == error and entry["cost_key"] == cost and entry["method"] not in (*PATHS, *but)]
     out = [entry["method"] for entry in entries if entry["ours"] is None]
     found = [(entry["ratio"][ratio], entry["method"]) for entry in entries if entry["ours"] and entry["ratio"].get(ratio) is not None]
     return (None, out[0]) if out else max(found, default=(None, None))
@@ -105,11 +106,25 @@ def hardest(scene, compared):
 def targets(scenes):
     rows = {}
     for text, asked, compared in TARGETS:
-        rows[slug(text)] = row = {"label": text, "asked": asked}
-        for name, scene in scenes.items():
-            ratio, method = hardest(scene, compared)
-            row[slug(name)] = "" if method is None else f"{'out of reach' if ratio is None else f'{ratio:.2f}'} ({NAMES[method]})"
+        for end, but in (("", ()), ("; others' tracers", ("ours-grid",))):
+            rows[slug(text + end)] = row = {"label": text + end, "asked": asked}
+            for name, scene in scenes.items():
+                ratio, method = hardest(scene, compared, but)
+                row[slug(name)] = "" if method is None else f"{'out of reach' if ratio is None else f'{ratio:.2f}'} ({SHORT.get(method, NAMES[method])})"
     return rows
+
+
+def summary(rows, scenes):
+    """Over the scenes, the least and the most of what a method's figures are times ours."""
+    found = {}
+    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64"):
+        for figure in ("wrong", "diffuse_relmse", "beauty_flip", "frame_ms"):
+            pairs = [(rows[f"{slug(name)}__{method}"][figure], rows[f"{slug(name)}__ours"][figure]) for name in scenes]
+            times = [float(theirs) / float(ours) for theirs, ours in pairs if theirs and ours]
+            if times:
+                least, most = (f"{x:.0f}" if x >= 9.95 else f"{x:.2g}" for x in (min(times), max(times)))
+                found[f"{method}_{figure}"] = least if least == most else f"{least} to {most}"
+    return {"all": {"label": "theirs over ours, over the scenes"} | found}
 
 
 def methods(files):
@@ -120,6 +135,7 @@ def methods(files):
             if point["knob"] == "default" or (point["knob"] == "paths" and point["value"] in ("1", "4", "16", "64")):
                 key = slug(point["method"]) + ("" if point["knob"] == "default" else f"_{point['value']}")
                 rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point)
+    rows |= summary(rows, scenes)
     notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
              "times are CPU time of all threads divided by the cores; nothing else running"] + [references(name, scene) for name, scene in scenes.items()]
     write("scene_methods.json", "Every method at its default in one run", commands, notes, rows)
@@ -175,34 +191,39 @@ def traced(entry, yardstick):
     return row
 
 
+def tracer_targets(rows):
+    """Sponza's figures beside what was asked of them, all at least or all at most."""
+    ours, embree = rows["ours"], rows["embree"]
+    rate = lambda order: f"{float(embree[f'ms_{order}']) / float(ours[f'ms_{order}']):.2f}"
+    asked = [("right within 1 % / 0.2 %, at least", (97.5, 97), (ours["right_1"], ours["right_02"]), True), ("unresolved %, at most", (1.2,), (ours["unresolved"],), False),
+             ("false hits %, at most", (0.4,), (ours["false"],), False), ("leaks %, at most", (0.6,), (ours["leak"],), False),
+             ("distance reads, mean / 95th, at most", (24, 55), (ours["reads_mean"], ours["reads_95"]), False),
+             ("MiB a probe, traced / with radiance, at most", (1.1, 2.1), (ours["mib_traced"], ours["mib_with_radiance"]), False),
+             ("time over that of B0+ on the same probes, in order / shuffled, at most", (0.30, 0.25), (ours["ratio_order"], ours["ratio_shuffled"]), False),
+             ("rays a second over Embree's, in order / shuffled, at least", (0.8, 0.8), (rate("order"), rate("shuffled")), True)]
+    found = {}
+    for text, bounds, values, least in asked:
+        reached = all(float(value) >= bound if least else float(value) <= bound for bound, value in zip(bounds, values))
+        found[slug(text)] = {"label": text, "asked": " / ".join(f"{bound:g}" for bound in bounds), "found": " / ".join(values), "reached": "yes" if reached else "no"}
+    write("tracer_targets.json", "What was asked of the tracer on Sponza", ["bench/pages/ray_table.sh"], [], found)
+
+
 def rays(arguments):
     notes = ["200,000 glossy rays (GGX alpha 0.1 to 0.3) from 64 viewpoints: the cameras and points of the reachable space; truth by Embree",
              "right: within that share of the scene's diagonal of the truth; shares in %, unsure: standard errors by viewpoint",
              "cube faces of 208 and octahedral maps of 512 texels: equal memory; W' 512; grids in the better of two poses, plain and --fit-grid",
              "ratio: trace time of 50,000 rays over that of B0+ with the same probes and lists, in picture order and shuffled; nothing else running"]
-    sponza, others = {}, {}
-    for count, at in zip(arguments[::2], arguments[1::2]):
-        name = "map_zdm2" if at.endswith("zdm2") else "cornell_mcguire glossy" if at.endswith("cornell_glossy") else Path(at).name
-        entries = json.loads(Path(at + ".race.json").read_text())
-        first = lambda tracer, field: next(entry for entry in entries if entry["tracer"] == tracer and entry.get("field", "").endswith(field))
-        yardstick = first("b0plus-octree", ".oct.sconce")
-        grid = max((first("b0plus", f".{pose}.sconce") for pose in ("fit", "plain")), key=lambda entry: entry["right_1"])
-        embree = next(entry for entry in entries if entry["tracer"] == "embree")
-        named = {"ours": (first("ours", ".ours.sconce"), "Sconce"), "b0plus_octree": (yardstick, "B0+, same probes and lists"),
-                 "b0plus_grid": (grid, f"B0+, grid of {grid['probes']}"), "embree": (embree, "Embree, both cores")}
-        if name == "Sponza":
-            named["wang"] = (first("wang", ".wang.sconce"), "W', same probes and lists")
-            for entry in entries:
-                for knob, text in KNOBS.items():
-                    if knob in entry["tracer"]:
-                        named[slug(knob)] = (entry, text)
-            sponza = {key: {"label": text} | traced(entry, yardstick) for key, (entry, text) in named.items()}
-        else:
-            others |= {f"{slug(name)}__{key}": {"label": f"{name}, {text}"} | traced(entry, yardstick) for key, (entry, text) in named.items()}
-    if sponza:
-        write("sponza_rays.json", "Tracers on Sponza, 54 probes, at equal memory", ["bench/pages/ray_table.sh"], notes, sponza)
-    if others:
-        write("scene_rays.json", "The tracer on other scenes, fields made as for Sponza", ["bench/pages/ray_table.sh"], notes, others)
+    entries = json.loads(Path(arguments[0]).read_text())
+    first = lambda tracer, field: next(entry for entry in entries if entry["tracer"] == tracer and entry.get("field", "").endswith(field))
+    yardstick = first("b0plus-octree", ".oct.sconce")
+    grid = max((first("b0plus", f".{pose}.sconce") for pose in ("fit", "plain")), key=lambda entry: entry["right_1"])
+    named = {"ours": (first("ours", ".ours.sconce"), "Sconce"), "b0plus_octree": (yardstick, "B0+, same probes and lists"),
+             "b0plus_grid": (grid, f"B0+, grid of {grid['probes']}"), "wang": (first("wang", ".wang.sconce"), "W', same probes and lists"),
+             "embree": (next(entry for entry in entries if entry["tracer"] == "embree"), "Embree, both cores")}
+    named |= {slug(knob): (entry, text) for entry in entries for knob, text in KNOBS.items() if knob in entry["tracer"]}
+    rows = {key: {"label": text} | traced(entry, yardstick) for key, (entry, text) in named.items()}
+    write("sponza_rays.json", "Tracers on Sponza, 54 probes, at equal memory", ["bench/pages/ray_table.sh"], notes, rows)
+    tracer_targets(rows)
 
 
 def walls(arguments):

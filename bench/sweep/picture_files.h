@@ -8,7 +8,8 @@
 namespace sconce
 {
 
-/// A frame's beauty, diffuse_indirect and glossy_indirect, to be compared with a reference's, and the depth that tells where both see the same.
+/// A frame's beauty, diffuse_indirect and glossy_indirect, to be compared with a reference's, and the depth that tells where both see the
+/// same.
 ImageSet lightLayers(const RenderedFrame& frame);
 
 /// The pictures that a report embeds (docs/formats.md): 16 bytes "SCNI", width, height, kind; then rows from the top, little endian.

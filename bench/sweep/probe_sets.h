@@ -20,8 +20,8 @@ struct BenchProbes
 using GridJudge = std::function<Result<double>(const ProbeGrid&)>;
 
 /// The probes that these settings ask for: by our placement, without its refinement (skeleton), from ball shrinking, or on a uniform grid
-/// in the reachable space, of the shapes and poses of gridPoses() in the one that is judged best; b0's has counts that are powers of two, the
-/// nearest to what was asked.
+/// in the reachable space, of the shapes and poses of gridPoses() in the one that is judged best; b0's has counts that are powers of two,
+/// the nearest to what was asked.
 /// @param judge  of grids; none: what their cells' corners see
 /// Errors: as placeProbes(), and the judge's; badArgument names the placement.
 Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress, const GridJudge& judge = {});

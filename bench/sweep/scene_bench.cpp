@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <thread>
 
 #include <sys/resource.h>
@@ -21,9 +20,7 @@
 #include "bench/sweep/point_json.h"
 #include "runtime/bake/bake.h"
 #include "runtime/field/field_space.h"
-#include "runtime/field/light_field_file.h"
 #include "scene/scene_check.h"
-#include "scene/triangle_rays.h"
 
 namespace sconce
 {
@@ -49,20 +46,11 @@ double cpuSeconds() // of all threads
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-std::optional<Json> readJson(const std::filesystem::path& file)
-{
-    std::ifstream stream(file);
-    if (!stream) return {};
-    Json json = Json::parse(stream, nullptr, false);
-    if (json.is_discarded()) return {}; // not ours, or damaged: measured again
-    return json;
-}
-
 } // namespace
 
-SceneBench::SceneBench(Gpu& lent, std::string deviceName, Desc made) : gpu(lent), device(std::move(deviceName)), desc(std::move(made))
+SceneBench::SceneBench(Gpu& lent, std::string deviceName, Desc made)
+    : gpu(lent), device(std::move(deviceName)), desc(std::move(made)), fields({gpu, desc.scene, desc.folder, device, desc.build})
 {
-    sceneKey = keyOf(desc.scene);
 }
 
 Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string deviceName, Desc desc, const PointSettings& defaults,
@@ -84,7 +72,7 @@ Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string dev
         made->camera = made->desc.scene.cameras.front();
     else
     {
-        auto probes = made->probesFor(defaults, progress);
+        auto probes = made->fields.probesFor(defaults, progress);
         if (!probes) return probes.error();
         const std::vector<PlacedProbe>& placed = probes->set.probes;
         made->camera.eye = placed.front().position;
@@ -94,12 +82,10 @@ Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string dev
         const vec3 world = std::abs(made->camera.forward.y) > 0.999f ? vec3(0.0f, 0.0f, -1.0f) : vec3(0.0f, 1.0f, 0.0f);
         made->camera.up = glm::normalize(world - glm::dot(world, made->camera.forward) * made->camera.forward);
     }
+    SceneBench& bench = *made;
+    made->fields.judgeGrids([&bench](const ProbeGrid& grid, const PointSettings& settings) { return bench.wrongOnGrid(grid, settings); },
+                            Json{toJson(bench.camera.eye), toJson(bench.camera.forward)}.dump());
     return made;
-}
-
-std::filesystem::path SceneBench::cached(const char* kind, const std::string& key, const char* extension) const
-{
-    return desc.folder / "cache" / kind / (key + extension);
 }
 
 std::string SceneBench::pointKey(const PlannedPoint& point) const
@@ -107,7 +93,7 @@ std::string SceneBench::pointKey(const PlannedPoint& point) const
     const BenchSettings& s = desc.settings;
     Json all = {{"build", desc.build},
                 {"device", device},
-                {"scene", sceneKey},
+                {"scene", fields.sceneKey()},
                 {"method", point.settings.method},
                 {"settings", settingsJson(point.settings)},
                 {"size", {s.width, s.height}},
@@ -123,7 +109,7 @@ std::string SceneBench::pointKey(const PlannedPoint& point) const
 
 std::optional<Json> SceneBench::kept(const PlannedPoint& point) const
 {
-    std::optional<Json> json = readJson(cached("points", pointKey(point), ".json"));
+    std::optional<Json> json = readJson(fields.cached("points", pointKey(point), ".json"));
     if (!json) return {};
     (*json)["id"] = point.id; // the same settings may be another knob's default
     (*json)["knob"] = point.knob;
@@ -133,36 +119,7 @@ std::optional<Json> SceneBench::kept(const PlannedPoint& point) const
 
 Status SceneBench::keep(const PlannedPoint& point, const Json& measured) const
 {
-    return writeText(cached("points", pointKey(point), ".json"), measured.dump(1));
-}
-
-std::string SceneBench::probesKey(const PointSettings& settings) const
-{
-    Json all = {{"build", desc.build}, {"scene", sceneKey}, {"set", probeSetName(settings)}};
-    if (settings.volume()) all["camera"] = {toJson(camera.eye), toJson(camera.forward)}; // its grid is chosen by the picture
-    return keyOf(all);
-}
-
-std::optional<BenchProbes> SceneBench::keptProbes(const PointSettings& settings) const
-{
-    const std::string key = probesKey(settings);
-    auto set = loadProbes(cached("probes", key, ".json"));
-    const std::optional<Json> report = readJson(cached("probes", key, ".report.json"));
-    if (!set || !report) return {};
-    return BenchProbes{probeSetName(settings), std::move(*set), *report};
-}
-
-Result<BenchProbes> SceneBench::probesFor(const PointSettings& settings, const Progress& progress)
-{
-    if (auto found = keptProbes(settings)) return std::move(*found);
-    auto made = placeFor(desc.scene, settings, progress, [&](const ProbeGrid& grid) { return wrongOnGrid(grid, settings); });
-    if (!made) return made.error();
-    if (made->set.probes.empty())
-        return Error{ErrorCode::badInput, fmt::format("Placement {} of scene '{}' has no probes; ask for more.", made->name, desc.name)};
-    const std::string key = probesKey(settings);
-    if (auto status = writeText(cached("probes", key, ".report.json"), made->report.dump()); !status) return status.error();
-    if (auto status = saveProbes(made->set, cached("probes", key, ".json")); !status) return status.error();
-    return made;
+    return writeText(fields.cached("points", pointKey(point), ".json"), measured.dump(1));
 }
 
 /// What a grid is chosen by: rays that our tracer answers wrongly on it, by small maps; of a volume the error of its diffuse light in the
@@ -203,112 +160,15 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
     return 2.0 - score->right1 - score->right02;
 }
 
-Result<FieldData> SceneBench::fieldFor(const PointSettings& settings, Json& cost, const Progress& progress)
-{
-    auto probes = probesFor(settings, progress);
-    if (!probes) return probes.error();
-    BakeSettings bake;
-    bake.resolution = settings.resolution;
-    bake.chart = settings.chart();
-    bake.bounces = settings.bounces;
-    bake.surfaceTexels = settings.bakedSurfaceTexels();
-    bake.surfaceRefined = settings.surfaceRefined;
-    bake.octree.voxels = settings.octreeVoxels;
-    bake.grid = probes->set.grid;
-    Result<FieldData> field = Error{ErrorCode::badArgument, "Nothing is baked yet."};
-    if (settings.opponent() && settings.surfaceTexels > 0)
-    {
-        // An opponent's maps are lit as ours are, by what rays find at the surfaces that the same probes see.
-        BakeSettings lender = bake;
-        lender.chart = gpu::kChartCube;
-        lender.resolution = settings.lightResolution;
-        lender.surfaceTexels = settings.surfaceTexels;
-        Json lent = Json::object();
-        auto light = baked(*probes, lender, settings.fieldGather, "", lent, progress);
-        if (light && !light->lamps.empty()) // which opponents don't know
-        {
-            lender.lampTexels = 0;
-            light = baked(*probes, lender, settings.fieldGather, "", lent, progress);
-        }
-        if (!light) return light;
-        bake.light = &*light;
-        field = baked(*probes, bake, settings.fieldGather, fieldKey(probes->name, lender, settings.fieldGather, ""), cost, progress);
-        if (field) cost["bake_s"] = cost["bake_s"].get<double>() + lent["bake_s"].get<double>();
-    }
-    else
-        field = baked(*probes, bake, settings.fieldGather, "", cost, progress);
-    cost["probe_set"] = probes->name;
-    cost["place_s"] = probes->report["seconds"];
-    cost["coverage"] = probes->report["coverage"]["rays"];
-    return field;
-}
-
-/// What is measured of a field doesn't depend on the tracer that reads it: methods share fields.
-/// @param litBy  key of the field that lends its light; empty: none
-std::string SceneBench::fieldKey(const std::string& probes, const BakeSettings& bake, bool fieldGather, const std::string& litBy) const
-{
-    return keyOf(Json{{"build", desc.build},
-                      {"format", kFieldFileVersion},
-                      {"device", device},
-                      {"scene", sceneKey},
-                      {"probes", probes},
-                      {"resolution", bake.resolution},
-                      {"chart", bake.chart},
-                      {"bounces", bake.bounces},
-                      {"surface", bake.surfaceTexels},
-                      {"refined", bake.surfaceTexels > 0 ? bake.surfaceRefined : 0.0f},
-                      {"lamps", bake.surfaceTexels > 0 ? bake.lampTexels : 0},
-                      {"gather", fieldGather},
-                      {"voxels", bake.octree.voxels},
-                      {"lit by", litBy}});
-}
-
-Result<FieldData> SceneBench::baked(const BenchProbes& probes, BakeSettings bake, bool fieldGather, const std::string& litBy, Json& cost,
-                                    const Progress& progress)
-{
-    const std::string key = fieldKey(probes.name, bake, fieldGather, litBy);
-    const std::filesystem::path file = cached("fields", key, ".sconce");
-    if (const std::optional<Json> known = readJson(cached("fields", key, ".json")))
-        if (auto field = loadField(file))
-        {
-            cost.update(*known);
-            cost["field"] = std::filesystem::relative(file, desc.folder).string();
-            return field;
-        }
-    std::vector<vec3> positions;
-    for (const PlacedProbe& probe : probes.set.probes) positions.push_back(probe.position);
-    BakeReport report;
-    std::optional<TriangleRays> exact;
-    if (bake.surfaceTexels > 0 && !fieldGather)
-    {
-        auto built = TriangleRays::build(desc.scene);
-        if (!built) return built.error();
-        bake.rays = &exact.emplace(std::move(*built));
-    }
-    auto field = bakeLightField(gpu.host, desc.scene, positions, bake, progress, report);
-    if (!field) return field;
-    for (const SceneEffect& effect : checkScene(desc.scene).effects)
-        if (effect.called) field->effects.push_back(effect.name);
-    const Json spent = {
-        {"bake_s", report.sceneSeconds + report.probeSeconds + report.octreeSeconds + report.gatherSeconds + report.bounceSeconds},
-        {"bake_peak_mb", double(report.peakDeviceBytes) / 1e6}};
-    // The field before its report: both must be there to be used again, so that a run stopped in between bakes anew.
-    if (auto status = saveField(*field, file); !status) return status.error();
-    if (auto status = writeText(cached("fields", key, ".json"), spent.dump()); !status) return status.error();
-    cost.update(spent);
-    cost["field"] = std::filesystem::relative(file, desc.folder).string();
-    return field;
-}
-
 /// Not kept: its light takes seconds.
 Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress)
 {
     Result<FieldData> places = Error{ErrorCode::badInput, "A volume has no probes."};
     if (volume == Volume::ddgiPlaced)
-        places = fieldFor(settings, cost, progress);
+        places = fields.fieldFor(settings, cost, progress);
     else
     {
-        auto probes = probesFor(settings, progress);
+        auto probes = fields.probesFor(settings, progress);
         if (!probes) return probes.error();
         cost["probe_set"] = probes->name;
         cost["place_s"] = probes->report["seconds"];
@@ -350,14 +210,14 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
     settings.roughness = roughness;
     settings.camera = camera;
     Json all = {{"build", desc.build},
-                {"scene", sceneKey},
+                {"scene", fields.sceneKey()},
                 {"size", {settings.width, settings.height}},
                 {"camera", {toJson(camera.eye), toJson(camera.forward), toJson(camera.up), camera.verticalFov}},
                 {"paths", {settings.samples, settings.bounces, settings.seed}}};
     if (roughness) all["roughness"] = *roughness;
     const std::string key = keyOf(all);
-    if (std::optional<Json> known = readJson(cached("references", key, ".json")))
-        if (auto images = readExr(cached("references", key, ".exr")))
+    if (std::optional<Json> known = readJson(fields.cached("references", key, ".json")))
+        if (auto images = readExr(fields.cached("references", key, ".exr")))
         {
             referenceJson = std::move(*known);
             referenceImages = std::move(*images);
@@ -375,8 +235,8 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
                        {"diffuse", numberOrNull(reference->estimatedRelMseDiffuse)},
                        {"glossy", numberOrNull(reference->estimatedRelMseGlossy)}}}};
     referenceImages = std::move(reference->images);
-    if (auto status = writeExr(referenceImages, cached("references", key, ".exr")); !status) return status;
-    if (auto status = writeText(cached("references", key, ".json"), referenceJson.dump()); !status) return status;
+    if (auto status = writeExr(referenceImages, fields.cached("references", key, ".exr")); !status) return status;
+    if (auto status = writeText(fields.cached("references", key, ".json"), referenceJson.dump()); !status) return status;
     return writeReferencePictures();
 }
 
@@ -486,7 +346,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneBench::rendererOf(const PointSetting
 Status SceneBench::makeTracer(Live& live, const Progress& progress)
 {
     const PointSettings& settings = live.plan->settings;
-    auto field = fieldFor(settings, live.fieldCost, progress);
+    auto field = fields.fieldFor(settings, live.fieldCost, progress);
     if (!field) return field.error();
     auto tracer = TracedMethod::create(gpu, std::move(*field),
                                        {.opponent = settings.opponent(),
@@ -702,7 +562,7 @@ Json SceneBench::describe(std::span<const PlannedPoint> points) const
     for (const PlannedPoint& point : points)
     {
         if (point.settings.pathTraced() || sets.contains(probeSetName(point.settings))) continue;
-        const std::optional<BenchProbes> kept = keptProbes(point.settings);
+        const std::optional<BenchProbes> kept = fields.keptProbes(point.settings);
         if (!kept) continue;
         Json set = kept->report;
         set["probes"] = Json::array();

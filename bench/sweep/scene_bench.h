@@ -8,9 +8,8 @@
 #include "base/progress.h"
 #include "bench/reference/ray_scene.h"
 #include "bench/reference/reference.h"
+#include "bench/sweep/kept_fields.h"
 #include "bench/sweep/plan.h"
-#include "bench/sweep/probe_sets.h"
-#include "runtime/bake/bake.h"
 #include "runtime/scene/device_scene.h"
 
 namespace sconce
@@ -91,20 +90,12 @@ public:
 
 private:
     SceneBench(Gpu& device, std::string deviceName, Desc made);
-    std::string fieldKey(const std::string& probes, const BakeSettings& bake, bool fieldGather, const std::string& litBy) const;
-    std::filesystem::path cached(const char* kind, const std::string& key, const char* extension) const;
     std::string pointKey(const PlannedPoint& point) const;
     bool software() const; // the device is the CPU
-    std::string probesKey(const PointSettings& settings) const;
-    std::optional<BenchProbes> keptProbes(const PointSettings& settings) const;
-    Result<BenchProbes> probesFor(const PointSettings& settings, const Progress& progress);
     Result<double> wrongOnGrid(const ProbeGrid& grid, const PointSettings& settings);
     Result<FieldData> volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress);
     Result<std::unique_ptr<SceneRenderer>> rendererOf(const PointSettings& settings, const LightField& field, RenderSettings frame,
                                                       const Progress& progress);
-    Result<FieldData> fieldFor(const PointSettings& settings, Json& cost, const Progress& progress);
-    Result<FieldData> baked(const BenchProbes& probes, BakeSettings bake, bool fieldGather, const std::string& litBy, Json& cost,
-                            const Progress& progress);
     Result<FieldData> volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress);
     Status makeTracer(Live& live, const Progress& progress);
     Status makePicture(Live& live, const Progress& progress);
@@ -119,7 +110,7 @@ private:
     Gpu& gpu;
     std::string device;
     Desc desc;
-    std::string sceneKey;
+    KeptFields fields; // of desc's scene, in its folder
     Camera camera;
     Json referenceJson; // null until the reference is there
     ImageSet referenceImages;

@@ -29,16 +29,17 @@ struct PointSettings
     uint32_t probes = knobs::benchProbes.value; // asked for; a grid takes the nearest that its shape allows
     std::string placement = std::string(knobs::placement.value); // optimised, skeleton (not refined afterwards), balls, grid
     uint32_t resolution = knobs::benchResolution.value;          // texels a side of an octahedral map; cube faces have half of it
-    uint32_t lightResolution = knobs::benchResolution.value; // of the maps of cube faces by which an opponent's maps are lit
+    uint32_t lightResolution = knobs::benchResolution.value;     // of the maps of cube faces by which an opponent's maps are lit
     uint32_t bounces = knobs::benchBounces.value;
-    uint32_t surfaceTexels = knobs::surfaceTexels.value; // of ours, and of what an opponent's maps are lit by; patches are of fields without
-    float surfaceRefined = knobs::surfaceRefined.value;  // share of them, where triangles are gathered from
-    bool fieldGather = knobs::gather.is("field");        // surface light gathered through the field, not by rays to triangles
-    int octreeVoxels = knobs::octreeVoxels.value;        // OctreeSettings::voxels
-    uint32_t lowFactor = knobs::lowFactor.value;         // of an opponent; 0: bestLowFactor
-    float lookUpBias = knobs::lookUpBias.value;          // of a volume of irradiance, metres
-    int distanceBits = knobs::distanceBits.value;        // of a texel of ours (bench/race/distance_format.h)
-    Quality quality;                                     // of our tracer
+    uint32_t surfaceTexels =
+        knobs::surfaceTexels.value;                     // of ours, and of what an opponent's maps are lit by; patches are of fields without
+    float surfaceRefined = knobs::surfaceRefined.value; // share of them, where triangles are gathered from
+    bool fieldGather = knobs::gather.is("field");       // surface light gathered through the field, not by rays to triangles
+    int octreeVoxels = knobs::octreeVoxels.value;       // OctreeSettings::voxels
+    uint32_t lowFactor = knobs::lowFactor.value;        // of an opponent; 0: bestLowFactor
+    float lookUpBias = knobs::lookUpBias.value;         // of a volume of irradiance, metres
+    int distanceBits = knobs::distanceBits.value;       // of a texel of ours (bench/race/distance_format.h)
+    Quality quality;                                    // of our tracer
     RenderSettings frame;
     uint32_t paths = knobs::tracedPaths.value; // a pixel, of the path tracer
 

@@ -470,7 +470,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
         if (settings.bounces > 0 || surfaceLight) bake.direct = bake.field.radiance;
         spent.energy.push_back(meanRadiance(bake.field));
-        const Status bounced = settings.light        ? bake.lentLight(**gpu, **baker, *settings.light, spent)
+        const Status bounced = settings.light         ? bake.lentLight(**gpu, **baker, *settings.light, spent)
                                : info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
                                                       : bake.bounces(**gpu, **baker, settings, spent);
         if (!bounced) return bounced.error();

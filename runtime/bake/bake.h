@@ -33,7 +33,7 @@ struct BakeSettings
     bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
     bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
-    std::optional<ProbeGrid> grid;                // set when the probes are a uniform one
+    std::optional<ProbeGrid> grid; // set when the probes are a uniform one
     /// Baked before, of the same scene and probes, with cube faces, surface light and no lamps: its light is what the probes' surfaces
     /// reflect, and nothing is gathered. What octahedral maps need, which hold no surface light. Null: what this bake finds itself.
     const FieldData* light = nullptr;

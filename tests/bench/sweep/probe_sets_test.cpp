@@ -49,11 +49,13 @@ TEST(PlaceFor, TakesTheGridThatItsJudgeFindsBest)
     };
     const ProbeGrid widest = taken([](const ProbeGrid& grid) { return -double(grid.step.x * float(grid.count.x - 1)); });
     ASSERT_GT(seen.size(), 3u);
-    for (const ProbeGrid& grid : seen)
-        EXPECT_LE(grid.step.x * float(grid.count.x - 1), widest.step.x * float(widest.count.x - 1) + 1e-5f);
+    for (const ProbeGrid& grid : seen) EXPECT_LE(grid.step.x * float(grid.count.x - 1), widest.step.x * float(widest.count.x - 1) + 1e-5f);
     const ProbeGrid narrowest = taken([](const ProbeGrid& grid) { return double(grid.step.x * float(grid.count.x - 1)); });
     EXPECT_LT(narrowest.step.x * float(narrowest.count.x - 1), 0.9f * widest.step.x * float(widest.count.x - 1));
-    const auto failed = placeFor(scene, settings, {}, [](const ProbeGrid&) -> Result<double> { return Error{ErrorCode::outOfMemory, "no room"}; });
+    const auto failed = placeFor(scene, settings, {},
+                                 [](const ProbeGrid&) -> Result<double> {
+                                     return Error{ErrorCode::outOfMemory, "no room"};
+                                 });
     ASSERT_FALSE(failed.ok());
     EXPECT_EQ(failed.error().message, "no room");
 }
