@@ -82,6 +82,7 @@ Result<std::unique_ptr<SceneBench>> SceneBench::create(Gpu& gpu, std::string dev
         const vec3 world = std::abs(made->camera.forward.y) > 0.999f ? vec3(0.0f, 0.0f, -1.0f) : vec3(0.0f, 1.0f, 0.0f);
         made->camera.up = glm::normalize(world - glm::dot(world, made->camera.forward) * made->camera.forward);
     }
+    if (!made->desc.settings.judgeGrids) return made;
     SceneBench& bench = *made;
     made->fields.judgeGrids([&bench](const ProbeGrid& grid, const PointSettings& settings) { return bench.wrongOnGrid(grid, settings); },
                             Json{toJson(bench.camera.eye), toJson(bench.camera.forward)}.dump());

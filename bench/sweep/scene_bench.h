@@ -27,6 +27,7 @@ struct BenchSettings
     uint64_t seed = knobs::benchSeed.value;                    // of rays and paths
     bool pictures = true;                                      // of every method's default point
     bool times = true;
+    bool judgeGrids = true; // by what a method makes of them; false: grids are those whose cells' corners see best, at once
     uint64_t groupBytes = uint64_t(knobs::groupMebibytes.value)
                           << 20; // of light fields that stand on the device at once to be timed in turns
 };
