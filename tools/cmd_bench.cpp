@@ -186,7 +186,7 @@ Result<std::vector<Json>> guardedPoints(const BenchRun& run, const std::string& 
     if (scratch.path.empty())
         return Error{ErrorCode::fileError, "No temporary folder can be made; set TMPDIR to one that can be written to."};
     settings.pictures = settings.judgeGrids = false; // a guard compares with itself
-    plan.methods = {"ours", "b0plus"}; // an opponent that gets worse is no better bench
+    plan.methods = {"ours", "b0plus"};               // an opponent that gets worse is no better bench
     const Result<Json> scene = benchScene(run, source, plan, settings, scratch.path, [](const Json&) { return success(); });
     if (!scene) return scene.error();
     return (*scene)["points"].get<std::vector<Json>>();

@@ -53,7 +53,7 @@ protected:
     {
         Text text(field, {});
         std::vector<double> values;
-        for (size_t i = texelsOf(field).size(); i < field.surfaceLight.size(); i += gpu::kCellWords)
+        for (size_t i = texelsOf(field).size(); i < texelsOf(field).size() + cellWords(field.info); i += gpu::kCellWords)
             if (field.surfaceLight[i + 6] != 0) values.push_back(text.unpackSharedExponent(field.surfaceLight[i + facing]).g);
         return values;
     }
