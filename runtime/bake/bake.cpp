@@ -375,6 +375,7 @@ BakeSettings lendingBake(BakeSettings settings)
     settings.chart = gpu::kChartCube;
     settings.resolution = (settings.resolution + 31) / 32 * 32; // of cube faces
     settings.lampTexels = 0;
+    settings.bounces = std::max(settings.bounces, 1u) - 1; // frames see its light scattered once more than its own maps do
     settings.radiance = settings.prefiltered = false;
     return settings;
 }
