@@ -36,10 +36,8 @@ Result<ProbeGrid> bestGrid(const Scene& scene, const PlaceSettings& place, const
 
 std::string probeSetName(const PointSettings& settings)
 {
-    // A volume's grid is chosen by its light, the others' by rays.
-    const bool ofVolume = settings.placement == "grid" && settings.volume();
-    return fmt::format("{}{}-{}{}", settings.placement, wantsPowersOfTwo(settings) ? "2" : "", ofVolume ? settings.method + "-" : "",
-                       settings.probes);
+    // A grid is chosen by its method's own answers, so that each has its own.
+    return fmt::format("{}-{}{}", settings.placement, settings.placement == "grid" ? settings.method + "-" : "", settings.probes);
 }
 
 Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress, const GridJudge& judge)

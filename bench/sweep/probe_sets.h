@@ -11,7 +11,7 @@ namespace sconce
 /// Where a point's probes go, with what placing them cost.
 struct BenchProbes
 {
-    std::string name; // optimised-54, grid-64 (powers of two: grid2-64; a volume's: grid-ddgi-64)
+    std::string name; // optimised-54; of a grid, which a method has to itself: grid-b0-64
     ProbeSet set;
     Json report; // method, seconds, coverage
 };

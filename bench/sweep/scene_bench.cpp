@@ -30,8 +30,8 @@ namespace
 constexpr uint32_t kTimerScopes = 32;
 constexpr uint32_t kTemporalFrames = 16; // of a still camera, before a picture that is filtered over time is judged
 constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
-constexpr uint32_t kJudgedMaps = 64; // texels, of grids to choose among
-constexpr uint64_t kPathSeed = 1000; // the path tracer's paths are not the reference's
+constexpr uint32_t kJudgedMaps = 128; // texels, of grids to choose among
+constexpr uint64_t kPathSeed = 1000;  // the path tracer's paths are not the reference's
 
 double secondsNow()
 {
@@ -123,8 +123,8 @@ Status SceneBench::keep(const PlannedPoint& point, const Json& measured) const
     return writeText(fields.cached("points", pointKey(point), ".json"), measured.dump(1));
 }
 
-/// What a grid is chosen by: rays that our tracer answers wrongly on it, by small maps; of a volume the error of its diffuse light in the
-/// picture that is judged.
+/// What a grid is chosen by: rays that the method's own tracer answers wrongly on it, by small maps; of a volume the error of its diffuse
+/// light in the picture that is judged.
 Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSettings& settings)
 {
     if (const std::optional<Volume> volume = settings.volume())
@@ -147,6 +147,7 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
             for (int x = 0; x < grid.count.x; ++x) positions.push_back(grid.origin + grid.step * vec3(x, y, z));
     BakeSettings bake;
     bake.resolution = kJudgedMaps;
+    bake.chart = settings.chart();
     bake.bounces = bake.surfaceTexels = 0;
     bake.radiance = bake.prefiltered = false;
     bake.scene.light = {.emitterSamples = 0, .skySamples = 0, .sunShadow = knobs::sunShadow.least, .pointShadow = knobs::pointShadow.least};
@@ -154,7 +155,8 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
     BakeReport report; // rays ask where surfaces are, not how they are lit
     auto field = bakeLightField(gpu.host, desc.scene, positions, bake, {}, report);
     if (!field) return field.error();
-    auto tracer = TracedMethod::create(gpu, std::move(*field), {.quality = settings.quality}, "grid");
+    auto tracer = TracedMethod::create(
+        gpu, std::move(*field), {.opponent = settings.opponent(), .quality = settings.quality, .lowFactor = settings.lowFactor}, "grid");
     if (!tracer) return tracer.error();
     const Result<TraceScore> score = (*tracer)->score(*rays);
     if (!score) return score.error();

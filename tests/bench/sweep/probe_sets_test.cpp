@@ -18,14 +18,14 @@ PointSettings asked(const char* method, const char* placement, uint32_t probes)
     return settings;
 }
 
-// The grid of the one opponent that needs powers of two is another set than the others' grid of as many.
+// A grid is a method's own, chosen by what that method answers on it; lists of the octree's probes are shared.
 TEST(ProbeSetName, TellsSetsApart)
 {
     EXPECT_EQ(probeSetName(asked("ours", "optimised", 54)), "optimised-54");
-    EXPECT_EQ(probeSetName(asked("ours-grid", "grid", 64)), "grid-64");
-    EXPECT_EQ(probeSetName(asked("b0plus", "grid", 64)), "grid-64");
-    EXPECT_EQ(probeSetName(asked("b0", "grid", 64)), "grid2-64");
-    EXPECT_EQ(probeSetName(asked("ddgi", "grid", 64)), "grid-ddgi-64"); // chosen by its light
+    EXPECT_EQ(probeSetName(asked("b0plus-octree", "optimised", 54)), "optimised-54");
+    EXPECT_EQ(probeSetName(asked("ours-grid", "grid", 64)), "grid-ours-grid-64");
+    EXPECT_EQ(probeSetName(asked("b0plus", "grid", 64)), "grid-b0plus-64");
+    EXPECT_EQ(probeSetName(asked("b0", "grid", 64)), "grid-b0-64");
     EXPECT_EQ(probeSetName(asked("ddgi-placed", "optimised", 64)), "optimised-64");
 }
 
@@ -71,7 +71,7 @@ TEST(PlaceFor, MakesTheGridThatTheMethodNeedsAndNamesWhatItDoesNotKnow)
     EXPECT_EQ(product(shape), 32); // of the powers of two the nearest to 27
     EXPECT_NEAR(product(free->set.grid->count), 27, 4) << free->report.dump();
     EXPECT_EQ(powers->report["grid"], Json::array({shape.x, shape.y, shape.z}));
-    EXPECT_EQ(free->name, "grid-27");
+    EXPECT_EQ(free->name, "grid-ours-grid-27");
     const auto refused = placeFor(scene, asked("ours", "scattered", 4), {});
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, ErrorCode::badArgument);
