@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include "runtime/bake/bake.h"
+#include "runtime/bake/group_bake.h"
 #include "runtime/field/light_field.h"
 #include "runtime/field/light_field_file.h"
+#include "runtime/field/light_groups.h"
 #include "runtime/frame/indirect_light.h"
 
 namespace sconce
@@ -44,6 +46,21 @@ Result<LightField> LightField::load(const Device& device, const std::filesystem:
     return makeLightField(device.gpu(), *data, quality);
 }
 
+Result<LightGroups> LightGroups::load(const Device& device, const LightField& field, const std::filesystem::path& file)
+{
+    const auto data = loadField(file);
+    if (!data) return data.error();
+    const gpu::LightFieldInfo &here = field.info(), &there = data->info;
+    if (here.probeCount != there.probeCount || here.faceSize != there.faceSize || here.surfaceSize != there.surfaceSize ||
+        here.refinedTexels != there.refinedTexels || here.hidden != there.hidden || field.state().groupCount != data->groups.size())
+        return Error{ErrorCode::badArgument,
+                     fmt::format("'{}' has {} probes of {} texels in {} light groups and is not the file of this light field, which has {} "
+                                 "of {} in {}; give that which it was loaded from",
+                                 file.string(), there.probeCount, there.faceSize, data->groups.size(), here.probeCount, here.faceSize,
+                                 field.state().groupCount)};
+    return makeLightGroups(device.gpu(), field, *data);
+}
+
 Result<IndirectLight> IndirectLight::create(const Device& device, const LightField& field, const Desc& desc)
 {
     return makeIndirectLight(device.gpu(), field, desc);
@@ -68,7 +85,8 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.rays = desc.rays;
     settings.take(*plan);
     BakeReport report;
-    const auto field = bakeLightField(device.gpu().host, capped, probes, settings, progress, report);
+    const auto field = desc.groups.empty() ? bakeLightField(device.gpu().host, capped, probes, settings, progress, report)
+                                           : bakeLightGroups(device.gpu().host, capped, probes, settings, desc.groups, progress, report);
     if (!field) return field.error();
     return saveField(*field, file);
 }

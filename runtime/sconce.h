@@ -24,6 +24,7 @@
 #include "runtime/vulkan/gpu_timer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/exact_rays.h"
+#include "scene/light_groups.h"
 #include "scene/scene_check.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/light_field.h"
@@ -93,6 +94,38 @@ public:
 
 private:
     std::shared_ptr<State> shared;
+};
+
+/// The groups of lights that a field was baked with, as a host switches, dims and colours them: in the frame in which that is recorded, and
+/// without a ray, since light is linear. A host without them has none of their passes or bytes. Move-only; it keeps its light field.
+class LightGroups
+{
+public:
+    /// Uploads the groups' shares. @param file  that `field` was loaded from
+    /// Errors: as LightField::load(), and badArgument where the file has no groups, or is of another field.
+    static Result<LightGroups> load(const Device& device, const LightField& field, const std::filesystem::path& file);
+    LightGroups(LightGroups&&) noexcept;
+    LightGroups& operator=(LightGroups&&) noexcept;
+    ~LightGroups();
+
+    std::vector<std::string> names() const;
+    /// @param weights  of each group in the order of names(): times its light as it was baked, in red, green, blue; 0 to 1e6
+    /// Errors: badArgument (the group by name, and its weight); what was set before stays.
+    Status set(std::span<const vec3> weights);
+    /// Records what `set` changed since the last record, before the frames that show it; nothing where nothing changed. Begins by waiting
+    /// for whoever reads the field, ends with the barrier that lets any later stage read it. Never allocates, throws or submits. The host's
+    /// own direct light is the host's to change. IndirectLight's `temporal` needs FrameView::follows = kFollowsChange for kChangeFrames
+    /// frames. Cost: a read of each word of each share and a write of each of the field's.
+    /// @param timer  optional; scope "light groups"
+    void record(VkCommandBuffer cmd, GpuTimer* timer = nullptr) noexcept;
+    uint64_t deviceBytes() const;
+
+    struct State; // of the library's own folders
+    explicit LightGroups(std::unique_ptr<State> made);
+    State& state() const { return *owned; }
+
+private:
+    std::unique_ptr<State> owned;
 };
 
 /// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
@@ -182,7 +215,8 @@ struct BakeDesc
     uint32_t bounces = knobs::bounces.value;       // times the baked light is re-injected at most, 0..64; each costs one gather a texel
     float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
     std::string effects = "auto";             // as planEffects()
-    const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
+    const ExactRays* rays = nullptr;    // to the scene's triangles, that gather surface light; null: through the light field, on the device
+    std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked
 };
 
 /// Bakes a scene at given probes on the host's device and writes the field to a file, whole or not at all. Submits and waits. Same input,

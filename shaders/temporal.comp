@@ -85,6 +85,7 @@ void main()
         past.rgb = clamp(past.rgb, mean - 3.0 * deviation, mean + 3.0 * deviation);
     }
     float frames = min(past.a + 1.0, sharp ? kLongestGlossy : kLongest);
+    if (frame.follows > 1u) frames = min(frames, float(frame.follows));
     vec3 blended = mix(past.rgb, own.rgb, 1.0 / frames);
     imageStore(after, at, vec4(blended, frames));
     imageStore(pointsAfter, at, uvec4(floatBitsToUint(distance(p.position, frame.eye)), packNormal8(p.normal) | ((kTerm + 1u) << 16), 0u, 0u));

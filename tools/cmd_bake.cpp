@@ -5,12 +5,14 @@
 
 #include "placement/probe_set.h"
 #include "runtime/bake/bake.h"
+#include "runtime/bake/group_bake.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "scene/triangle_rays.h"
 #include "tools/field_report.h"
+#include "tools/light_group_options.h"
 #include "tools/quality_option.h"
 
 namespace sconce::tools
@@ -24,6 +26,7 @@ struct BakeOptions
     SceneOptions scene;
     BakeSettings settings;
     std::string probes, output, device, effects = "auto", gather{knobs::gather.value};
+    std::vector<std::string> groups;
     uint64_t memoryMb = knobs::deviceMebibytes.value;
     QualityOption quality;
 };
@@ -31,6 +34,8 @@ struct BakeOptions
 int runBake(const BakeOptions& options, const Context& context)
 {
     const Stopwatch watch;
+    const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
+    if (!groups) return fail(groups.error());
     const Result<ProbeSet> set = loadProbes(options.probes);
     if (!set) return fail(set.error());
     Result<Scene> scene = options.scene.load(context);
@@ -76,7 +81,9 @@ int runBake(const BakeOptions& options, const Context& context)
         if (!found) return fail(found.error());
         settings.light = &light.emplace(std::move(*found));
     }
-    Result<FieldData> field = bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report);
+    Result<FieldData> field = groups->empty()
+                                  ? bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report)
+                                  : bakeLightGroups(device->host(), *scene, positions, settings, *groups, consoleProgress(context), report);
     if (!field) return fail(field.error());
     if (report.moved > 0 && !context.quiet)
         std::cerr << "note: " << report.moved << " of " << positions.size()
@@ -131,6 +138,10 @@ void addBakeCommand(CLI::App& app, Context& context)
     addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
     addKnob(bake, "--gather", options->gather, knobs::gather);
     addChoice(bake, "--chart", settings.chart, knobs::chart);
+    addGroups(
+        bake, options->groups,
+        "Lights that can be switched, dimmed and coloured later (`render --dim`, `relight`, LightGroups), each for a bake more and all "
+        "light of the file again");
     addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
     bake->add_option(
             "--effects", options->effects,

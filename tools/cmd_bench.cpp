@@ -279,6 +279,9 @@ void addBenchCommand(CLI::App& app, Context& context)
         ->type_name("LIST");
     bench->add_flag("--methods-only", options->plan.methodsOnly,
                     described("Measure every method's default point alone", words("with its knobs")));
+    bench->add_flag("!--quick-grids", settings.judgeGrids,
+                    described("Give each method the grid whose cells' corners see best",
+                              words("that on which its own answers are best, for minutes more in large scenes")));
     addKnob(bench, "--roughness", options->plan.roughness, knobs::roughness, "R");
     addKnob(bench, "--rays", settings.rays, knobs::judgedRays);
     addKnob(bench, "--frames", settings.frames, knobs::timedFrames);

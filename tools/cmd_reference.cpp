@@ -7,6 +7,7 @@
 
 #include "bench/reference/metrics.h"
 #include "bench/reference/reference.h"
+#include "tools/light_group_options.h"
 #include "tools/pictures.h"
 
 namespace sconce::tools
@@ -25,6 +26,7 @@ struct ReferenceOptions
     CameraOptions camera;
     PictureOptions pictures;
     ReferenceSettings settings;
+    std::vector<std::string> groups, dims;
 };
 
 int runReference(const ReferenceOptions& options, const Context& context)
@@ -32,8 +34,12 @@ int runReference(const ReferenceOptions& options, const Context& context)
     const Stopwatch watch;
     if (const std::string problem = options.pictures.problem(kReferenceLayers); !problem.empty())
         return fail(ErrorCode::badArgument, problem);
-    const Result<Scene> scene = options.scene.load(context);
+    const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
+    if (!groups) return fail(groups.error());
+    Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
+    if (!groups->empty() || !options.dims.empty())
+        if (const Status dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
     ReferenceSettings settings = options.settings;
@@ -156,6 +162,8 @@ void addReferenceCommands(CLI::App& app, Context& context)
     addKnob(reference, "--seed", settings.seed, knobs::pathSeed);
     addSwitch(reference, "--pixel-centre", settings.pixelCentre, knobs::pixelCentre);
     addSwitch(reference, "--parts", settings.parts, knobs::parts);
+    addGroups(reference, options->groups, "Lights for --dim");
+    addDims(reference, options->dims);
     options->pictures.add(reference, kReferenceLayers);
     onChosen(reference, context, options, runReference);
 

@@ -8,11 +8,13 @@
 
 #include "bench/opponents/baselines.h"
 #include "runtime/field/light_field_file.h"
+#include "runtime/field/light_groups.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
+#include "tools/light_group_options.h"
 #include "tools/pictures.h"
 #include "tools/quality_option.h"
 
@@ -37,6 +39,7 @@ struct RenderOptions
     PictureOptions pictures;
     std::string field, effects = "auto", tracer = "ours", device;
     QualityOption quality;
+    std::vector<std::string> dims;
     uint32_t width = knobs::width.value, height = knobs::height.value, samples = knobs::glossyRays.value, frames = knobs::drawnFrames.value,
              seed = knobs::frameSeed.value;
     std::optional<float> roughness;
@@ -45,6 +48,26 @@ struct RenderOptions
     bool noDenoise = !knobs::denoise.value, temporal = knobs::temporal.value;
     std::string diffuse{knobs::diffuse.value}, areaShadows{knobs::areaShadows.value};
 };
+
+/// Changes the light of a field on the device, as a host does before a frame. @return  milliseconds by the device's clock; 0: it has none
+Result<double> dimField(Gpu& gpu, const LightField& field, const FieldData& data, std::span<const vec3> weights)
+{
+    auto groups = makeLightGroups(gpu, field, data);
+    if (!groups) return groups.error();
+    auto timer = GpuTimer::create(gpu, 1);
+    if (!timer) return timer.error();
+    if (Status status = groups->set(weights); !status) return status.error();
+    const Status recorded = gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            groups->record(cmd, &*timer);
+        });
+    if (!recorded) return recorded.error();
+    double milliseconds = 0.0;
+    for (const GpuTimer::Scope& scope : timer->read()) milliseconds += scope.milliseconds;
+    return milliseconds;
+}
 
 /// What --quality says and the command line doesn't.
 Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tracer)
@@ -186,6 +209,12 @@ int runRender(RenderOptions options, const Context& context)
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
+    const std::vector<LightGroupDesc> groups = groupsOf(data->groups);
+    const Result<std::vector<vec3>> weights = weightsOf(options.dims, groups);
+    if (!weights) return fail(weights.error());
+    if (!options.dims.empty())
+        if (const Status dimmed = dimScene(*scene, groups, options.dims); !dimmed) return fail(dimmed.error());
+
     // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
     for (const PlannedEffect& effect : plan->effects)
         if (effect.ofScene && !effect.givenUp.empty() && std::ranges::find(data->effects, effect.name) != data->effects.end())
@@ -221,6 +250,13 @@ int runRender(RenderOptions options, const Context& context)
     if (!deviceScene) return fail(deviceScene.error());
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
+    std::optional<double> groupsMs;
+    if (!options.dims.empty())
+    {
+        const Result<double> dimmed = dimField(**gpu, *field, *data, *weights);
+        if (!dimmed) return fail(dimmed.error());
+        groupsMs = *dimmed;
+    }
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
@@ -277,6 +313,8 @@ int runRender(RenderOptions options, const Context& context)
     json["area_shadows"] = options.areaShadows;
     json["temporal"] = settings.effects.temporal;
     json["frames"] = options.frames;
+    json["dim"] = options.dims;
+    if (groupsMs) json["light_groups_ms"] = *groupsMs;
     json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
@@ -328,6 +366,7 @@ void addRenderCommand(CLI::App& app, Context& context)
     addKnob(command, "--roughness", options->roughness, knobs::roughness, "R");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
     addKnob(command, "--seed", options->seed, knobs::frameSeed);
+    addDims(command, options->dims);
     addDevice(command, options->device);
     options->pictures.add(command, kFrameLayers);
     options->quality.add(command);

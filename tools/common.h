@@ -133,6 +133,7 @@ void addFieldCommands(CLI::App& app, Context& context);
 void addRenderCommand(CLI::App& app, Context& context);
 void addTraceCommand(CLI::App& app, Context& context);
 void addReferenceCommands(CLI::App& app, Context& context);
+void addRelightCommand(CLI::App& app, Context& context);
 void addBenchCommand(CLI::App& app, Context& context);
 void addTuneCommand(CLI::App& app, Context& context);
 void addDoctorCommand(CLI::App& app, Context& context);

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/listed.h"
 #include "bench/opponents/baselines.h"
@@ -32,7 +33,8 @@ Json bytesJson(const FieldBytes& bytes)
             {"prefiltered_radiance", bytes.prefiltered},
             {"surface_light", bytes.surface},
             {"surface_light_cells", bytes.cells},
-            {"lamps", bytes.lamps}};
+            {"lamps", bytes.lamps},
+            {"light_groups", bytes.groups}};
 }
 
 std::string megabytes(size_t bytes)
@@ -59,6 +61,9 @@ Json fieldJson(const FieldData& field)
     json["bounces"] = field.bounces;
     json["effects"] = field.effects;
     json["bytes"] = bytesJson(bytesByPart(field));
+    json["light_groups"] = Json::array();
+    for (const LightGroup& group : field.groups)
+        json["light_groups"].push_back({{"name", group.which.name}, {"members", group.which.members}});
     json["octree"] = {{"leaves", field.octree.leaves},
                       {"nodes", field.octree.nodes},
                       {"depth", field.octree.topShift},
@@ -68,7 +73,7 @@ Json fieldJson(const FieldData& field)
     json["origin"] = toJson(info.origin);
     json["scale"] = info.scale;
     json["sky"] = toJson(info.sky);
-    json["format_version"] = field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion; // what was baked is written as that
+    json["format_version"] = field.fileVersion > 0 ? field.fileVersion : fileVersionOf(field); // what was baked is written as that
     return json;
 }
 
@@ -92,7 +97,17 @@ void printField(const FieldData& field, const std::string& file)
     if (!field.lamps.empty())
         std::cout << fmt::format("lamps: {}, with shadow maps of {} texels a side, {}\n", field.lamps.size(), field.lamps[0].size,
                                  megabytes(bytes.lamps));
-    std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : kFieldFileVersion) << "\n"
+    if (!field.groups.empty())
+    {
+        std::cout << fmt::format("light groups: {} in {}, {} each, {:.2f} MB a probe:", field.groups.size(), megabytes(bytes.groups),
+                                 megabytes(bytes.groups / field.groups.size()),
+                                 double(bytes.groups) / 1e6 / double(field.groups.size()) / double(info.probeCount));
+        for (const LightGroup& group : field.groups)
+            std::cout << " " << group.which.name
+                      << (group.which.members.empty() ? "" : fmt::format("={}", fmt::join(group.which.members, ",")));
+        std::cout << "\n";
+    }
+    std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : fileVersionOf(field)) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;
     std::cout << std::endl;

@@ -21,6 +21,7 @@ int main(int argc, char** argv)
     addPlaceCommand(app, context);
     addBakeCommand(app, context);
     addFieldCommands(app, context);
+    addRelightCommand(app, context);
     addRenderCommand(app, context);
     addTraceCommand(app, context);
     addReferenceCommands(app, context);

@@ -346,7 +346,7 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     if (auto status = surfaces->bounce(); !status) return status;
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     if (auto status = cancelledIfAsked("refined texels", 0, 1); !status) return status;
-    return surfaces->refine(field, settings.surfaceRefined);
+    return surfaces->refine(field, settings.surfaceRefined, settings.layout);
 }
 
 /// The probes' radiance of what their surfaces reflect of light that another field holds.
@@ -429,7 +429,9 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     {
         Lamps lamps; // which needs no device
         if (info.surfaceSize > 0 && settings.rays && settings.lampTexels > 0)
-            lamps = findLamps(*settings.rays, info, bake.field.probes, settings.lampTexels);
+            lamps = settings.layout && settings.layout->lamps ? lampsIn(scene, *settings.layout->lamps)
+                                                              : findLamps(*settings.rays, info, bake.field.probes, settings.lampTexels);
+        if (settings.layout && !settings.layout->lamps) settings.layout->lamps = lamps;
         bake.field.lamps = std::move(lamps.lamps);
         bake.field.lampMaps = std::move(lamps.maps);
         DeviceSceneDesc sceneDesc = settings.scene;

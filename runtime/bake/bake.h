@@ -16,6 +16,8 @@
 namespace sconce
 {
 
+struct LightLayout; // runtime/bake/surface_baker.h
+
 /// Ranges and prices: base/knobs.h.
 struct BakeSettings
 {
@@ -37,6 +39,7 @@ struct BakeSettings
     /// Baked before, of the same scene and probes, with cube faces, surface light and no lamps: its light is what the probes' surfaces
     /// reflect, and nothing is gathered. What octahedral maps need, which hold no surface light. Null: what this bake finds itself.
     const FieldData* light = nullptr;
+    LightLayout* layout = nullptr; // where light is kept that isn't in texels: an empty one is filled; null: as this bake finds it
     uint64_t hostMemory = knobs::hostBytes.value; // bytes of main memory that it may take; 0: what is free
 
     /// Keeps what frames by a plan ask for, and the names of the plan's effects. @param tracedDiffuse  diffuse light by rays, too

@@ -25,13 +25,7 @@ constexpr size_t kMostKeysOfProbe = 1024; // voxels are larger where there were 
 constexpr double kMostKeys = 2147483648.0;
 constexpr uint64_t kHiddenStream = 19; // of random numbers
 
-struct Place
-{
-    uint32_t key;
-    vec3 point; // field space
-    vec3 normal;
-    float grazing; // TriangleGather::grazingOf()
-};
+using Place = HiddenPlaces::Place;
 
 struct Text : twin::LightFieldTwin<float>
 {
@@ -183,9 +177,8 @@ std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const ui
     }
 }
 
-} // namespace
-
-void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent)
+/// All places, and how large the voxels of their keys are.
+HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles)
 {
     const Scene& scene = triangles.scene();
     double area = 0.0;
@@ -193,33 +186,69 @@ void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::s
     const uint32_t shift = voxelShift(lit, area);
     lit.info.hidden = shift; // keys are of these voxels; there is no table yet
     const double side = double(lit.info.voxel) * lit.info.scale * double(1u << shift);
-    std::vector<Place> places = hiddenPlaces(lit, triangles, side / std::sqrt(kPointsOfVoxel));
-    std::vector<size_t> first = sortByKey(places, lit, triangles.offset());
+    HiddenPlaces found;
+    found.places = hiddenPlaces(lit, triangles, side / std::sqrt(kPointsOfVoxel));
+    std::vector<size_t> first = sortByKey(found.places, lit, triangles.offset());
     while (first.size() > kMostKeysOfProbe * lit.info.probeCount + 1 && lit.info.hidden + 1 < 1u << gpu::kHiddenShiftBits)
     {
         ++lit.info.hidden;
-        first = sortByKey(places, lit, triangles.offset());
+        first = sortByKey(found.places, lit, triangles.offset());
     }
-    const float wide = lit.info.voxel * float(1u << lit.info.hidden);
-    std::vector<uint32_t> found(first.size() - 1);
+    for (size_t i = 0; i + 1 < first.size(); ++i) found.keys.emplace_back(first[i], first[i + 1]);
+    found.shift = std::exchange(lit.info.hidden, 0u); // that look-ups do without
+    return found;
+}
+
+/// Light of each key; 0: not known.
+std::vector<uint32_t> lightOfKeys(const FieldData& lit, const HiddenPlaces& of, const TriangleGather& triangles,
+                                  std::span<const uint32_t> sent)
+{
+    const float wide = lit.info.voxel * float(1u << of.shift);
+    std::vector<uint32_t> found(of.keys.size());
     parallelFor(found.size(),
                 [&](size_t i)
                 {
                     Text text(lit);
-                    found[i] = lightOf(std::span(places).subspan(first[i], first[i + 1] - first[i]), wide, text, triangles, sent);
+                    const auto [first, end] = of.keys[i];
+                    found[i] = lightOf(std::span(of.places).subspan(first, end - first), wide, text, triangles, sent);
                 });
-    const uint32_t voxels = std::exchange(lit.info.hidden, 0u); // that look-ups do without
-    parallelFor(found.size(),
+    return found;
+}
+
+/// Keeps the keys that a table needs.
+void dropNeedless(const FieldData& lit, HiddenPlaces& of, std::vector<uint32_t>& light, float offset)
+{
+    parallelFor(light.size(),
                 [&](size_t i)
                 {
-                    if (found[i] == Text::kBlackWord && !isLitWithout(lit, places[first[i]], triangles.offset())) found[i] = 0;
+                    if (light[i] == Text::kBlackWord && !isLitWithout(lit, of.places[of.keys[i].first], offset)) light[i] = 0;
                 });
-    std::vector<uint32_t> keys, light;
-    for (size_t i = 0; i < found.size(); ++i)
-        if (found[i] != 0) keys.push_back(places[first[i]].key), light.push_back(found[i]);
-    if (keys.empty()) return;
+    size_t kept = 0;
+    for (size_t i = 0; i < light.size(); ++i)
+        if (light[i] != 0) of.keys[kept] = of.keys[i], light[kept++] = light[i];
+    of.keys.resize(kept);
+    light.resize(kept);
+}
+
+} // namespace
+
+void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent,
+                         std::optional<HiddenPlaces>* places)
+{
+    std::optional<HiddenPlaces> own;
+    std::optional<HiddenPlaces>& of = places ? *places : own;
+    const bool known = of.has_value();
+    if (!known) of = findPlaces(lit, triangles);
+    std::vector<uint32_t> light = lightOfKeys(lit, *of, triangles, sent);
+    if (known)
+        std::ranges::replace(light, 0u, Text::kBlackWord); // in the light that found the places there is some
+    else
+        dropNeedless(lit, *of, light, triangles.offset());
+    if (light.empty()) return;
+    std::vector<uint32_t> keys;
+    for (const auto& [first, end] : of->keys) keys.push_back(of->places[first].key);
     const std::vector<uint32_t> table = tableOf(keys, light);
-    lit.info.hidden = voxels | uint32_t(table.size() / 2) << gpu::kHiddenShiftBits;
+    lit.info.hidden = of->shift | uint32_t(table.size() / 2) << gpu::kHiddenShiftBits;
     lit.surfaceLight.insert(lit.surfaceLight.end(), table.begin(), table.end());
 }
 

@@ -1,9 +1,27 @@
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include "runtime/bake/triangle_gather.h"
 
 namespace sconce
 {
+
+/// Where light of hidden surfaces is gathered.
+struct HiddenPlaces
+{
+    struct Place
+    {
+        uint32_t key; // hidden_light.h
+        vec3 point;   // field space
+        vec3 normal;
+        float grazing; // TriangleGather::grazingOf()
+    };
+    uint32_t shift = 0;                          // log2 of finest voxels a side
+    std::vector<Place> places;                   // by key
+    std::vector<std::pair<size_t, size_t>> keys; // from where to where a key's are
+};
 
 /// Gathers light, by exact rays, at surfaces that no texel of a field's surface light shows: undersides, gaps, what stands behind things; a
 /// mean for each voxel and facing (shaders/shared/hidden_light.h). Points are drawn evenly over the scene's surface, on each side that can
@@ -12,6 +30,9 @@ namespace sconce
 /// rays for each voxel and facing.
 /// @param lit   with surface light, without refined texels
 /// @param sent  radiance that each texel sends, RGB9E5
-void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent);
+/// @param places  where light was gathered before, of the same surfaces in other light, which then is where it is; null, or empty: found,
+///                and put there
+void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent,
+                         std::optional<HiddenPlaces>* places = nullptr);
 
 } // namespace sconce

@@ -310,10 +310,17 @@ Lamps findLamps(const ExactRays& rays, const gpu::LightFieldInfo& space, std::sp
         found.lamps.push_back(lampOf(candidate, space, places, texels));
         found.lamps.back().firstWord = uint32_t(candidates.size() * sizeof(gpu::Lamp) / sizeof(uint32_t) + found.maps.size());
         addMap(found.lamps.back(), depthsOf(found.lamps.back(), rays, space), found.maps);
+        found.oneOf.push_back(candidate.part->triangles.front());
         found.triangles.insert(found.triangles.end(), candidate.part->triangles.begin(), candidate.part->triangles.end());
     }
     std::ranges::sort(found.triangles);
     return found;
+}
+
+Lamps lampsIn(const Scene& scene, Lamps lamps)
+{
+    for (size_t i = 0; i < lamps.lamps.size(); ++i) lamps.lamps[i].radiance = meanEmission(scene, lamps.oneOf[i]);
+    return lamps;
 }
 
 } // namespace sconce

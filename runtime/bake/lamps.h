@@ -14,6 +14,7 @@ struct Lamps
     std::vector<gpu::Lamp> lamps;
     std::vector<uint32_t> maps;      // FieldData::lampMaps
     std::vector<uint32_t> triangles; // of the scene that they are, ascending
+    std::vector<uint32_t> oneOf;     // a triangle of each lamp
 };
 
 /// Of a scene's emitters those that are lamps: a triangle or a convex quadrilateral that shines evenly, alone, to one side; seen under less
@@ -24,5 +25,8 @@ struct Lamps
 /// @param probes  whose surroundings tell where light falls
 /// @param texels  a side of a map: a multiple of gpu::kLampBlock squared
 Lamps findLamps(const ExactRays& rays, const gpu::LightFieldInfo& space, std::span<const gpu::ProbeHeader> probes, uint32_t texels);
+
+/// The same lamps in a scene of the same triangles that shine otherwise, or not at all.
+Lamps lampsIn(const Scene& scene, Lamps lamps);
 
 } // namespace sconce

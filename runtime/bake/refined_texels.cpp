@@ -18,10 +18,11 @@ constexpr float kLeastOff = 0.03f; // share of a texel's light that it is off by
 constexpr float kDim = 0.5f;       // of the mean light: what errors are told from beside a texel's own
 constexpr uint32_t kFineSide = 1u << gpu::kFineLog;
 
-struct Texel
+using Texel = RefinedPlaces::Texel;
+
+struct Candidate
 {
-    uint32_t probe;
-    glm::uvec3 at;      // x, y, face
+    Texel texel;
     float error = 0.0f; // of its light, times its area
 };
 
@@ -100,23 +101,25 @@ std::vector<Texel> worstTexels(const FieldData& lit, size_t most)
     const float dim = kDim * meanLight(lit);
     const uint32_t side = lit.info.surfaceSize;
     const size_t rows = size_t(6) * side * lit.info.probeCount;
-    std::vector<std::vector<Texel>> found(rows);
+    std::vector<std::vector<Candidate>> found(rows);
     parallelFor(rows,
                 [&](size_t row)
                 {
                     Texels texels(lit, dim);
                     for (uint32_t x = 0; x < side; ++x)
                     {
-                        Texel texel{uint32_t(row / (size_t(6) * side)), {x, row % side, row / side % 6}};
-                        texel.error = texels.errorOf(texel);
-                        if (texel.error > 0.0f) found[row].push_back(texel);
+                        const Texel texel{uint32_t(row / (size_t(6) * side)), {x, row % side, row / side % 6}};
+                        const float error = texels.errorOf(texel);
+                        if (error > 0.0f) found[row].push_back({texel, error});
                     }
                 });
-    std::vector<Texel> all;
+    std::vector<Candidate> all;
     for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
-    std::ranges::stable_sort(all, std::ranges::greater(), &Texel::error);
+    std::ranges::stable_sort(all, std::ranges::greater(), &Candidate::error);
     if (all.size() > most) all.resize(most);
-    return all;
+    std::vector<Texel> worst;
+    for (const Candidate& candidate : all) worst.push_back(candidate.texel);
+    return worst;
 }
 
 /// As surface_filter.comp, over the finer texels.
@@ -172,25 +175,27 @@ struct FineFilter
 
 } // namespace
 
-void refineTexels(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent, float share)
+void refineTexels(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent, float share,
+                  std::optional<RefinedPlaces>* places)
 {
     const size_t all = size_t(6) * lit.info.surfaceSize * lit.info.surfaceSize * lit.info.probeCount;
-    const std::vector<Texel> refined = worstTexels(lit, size_t(share * double(all)));
+    const std::vector<Texel> refined = places && *places ? (*places)->texels : worstTexels(lit, size_t(share * double(all)));
+    if (places && !*places) *places = RefinedPlaces{refined};
     std::vector<TriangleGather::FinePoints> points(refined.size());
     parallelFor(refined.size(), [&](size_t i) { points[i] = triangles.gatherFiner(refined[i].probe, refined[i].at, sent); });
     std::vector<uint32_t> indices(refined.size());
-    std::unordered_map<uint32_t, uint32_t> places;
+    std::unordered_map<uint32_t, uint32_t> numbers; // of refined texels, by their index
     for (uint32_t i = 0; i < refined.size(); ++i)
     {
         const glm::ivec3 at(refined[i].at);
-        places[indices[i] = Texels(lit).surfaceIndex(refined[i].probe, at.z, at.x, at.y)] = i;
+        numbers[indices[i] = Texels(lit).surfaceIndex(refined[i].probe, at.z, at.x, at.y)] = i;
     }
     std::vector<uint32_t> finer(gpu::kFineWords * refined.size());
     parallelFor(refined.size(),
                 [&](size_t i)
                 {
                     Texels texels(lit);
-                    const FineFilter filter{texels, refined, points, places};
+                    const FineFilter filter{texels, refined, points, numbers};
                     uint32_t* const own = &finer[gpu::kFineWords * i];
                     own[0] = lit.surfaceLight[indices[i]];
                     for (uint32_t index = 0; index + 1 < gpu::kFineWords; ++index) own[1 + index] = filter.lightOf(refined[i], index);

@@ -1,9 +1,22 @@
 #pragma once
 
+#include <optional>
+
 #include "runtime/bake/triangle_gather.h"
 
 namespace sconce
 {
+
+/// Texels that are refined, in the order of their numbers.
+struct RefinedPlaces
+{
+    struct Texel
+    {
+        uint32_t probe;
+        glm::uvec3 at; // x, y, face
+    };
+    std::vector<Texel> texels;
+};
 
 /// Refines the texels of a field's surface light (shaders/shared/surface_light.h) within which light changes most, for their area: those
 /// whose light is off what their neighbours on the same surface would have it, of the two probes that light a place; into finer ones,
@@ -11,6 +24,8 @@ namespace sconce
 /// @param lit    with surface light, none of it refined
 /// @param sent   radiance that each texel sends, RGB9E5
 /// @param share  of all texels, at most
-void refineTexels(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent, float share);
+/// @param places  where texels were refined before, which then are those; null, or empty: found, and put there
+void refineTexels(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent, float share,
+                  std::optional<RefinedPlaces>* places = nullptr);
 
 } // namespace sconce

@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "runtime/bake/hidden_surfaces.h"
-#include "runtime/bake/refined_texels.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "shaders/shared/pure.h"
 
@@ -250,13 +248,13 @@ Status SurfaceBaker::read(std::span<uint32_t> found)
     return success();
 }
 
-Status SurfaceBaker::refine(FieldData& lit, float share)
+Status SurfaceBaker::refine(FieldData& lit, float share, LightLayout* layout)
 {
     if (!desc.triangles) return success();
     std::vector<uint32_t> before(texels());
     if (auto status = gpu->download(sentBefore, 0, std::as_writable_bytes(std::span(before))); !status) return status;
-    lightHiddenSurfaces(lit, *desc.triangles, before);
-    refineTexels(lit, *desc.triangles, before, share);
+    lightHiddenSurfaces(lit, *desc.triangles, before, layout ? &layout->hidden : nullptr);
+    refineTexels(lit, *desc.triangles, before, share, layout ? &layout->refined : nullptr);
     return success();
 }
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "runtime/bake/hidden_surfaces.h"
+#include "runtime/bake/lamps.h"
+#include "runtime/bake/refined_texels.h"
 #include "runtime/bake/triangle_gather.h"
 #include "runtime/field/light_field.h"
 #include "runtime/scene/device_scene.h"
@@ -10,6 +14,15 @@
 
 namespace sconce
 {
+
+/// Where the light of a bake is kept besides the texels: what is found by the light of one bake, for others of the same scene and probes in
+/// other light, so that the words of all are of the same places.
+struct LightLayout
+{
+    std::optional<Lamps> lamps;
+    std::optional<HiddenPlaces> hidden;
+    std::optional<RefinedPlaces> refined;
+};
 
 /// Gathers light at the surface points of all probes' texels (shaders/shared/surface_light.h), straight from emitters and sky and bounce by
 /// bounce: rays are traced once, through the field or to the scene's triangles, and each bounce reads what was found where they ended. Each
@@ -39,8 +52,9 @@ public:
     /// The light as FieldData::surfaceLight, filtered, and with that of the cells, which has as many bounces.
     Status read(std::span<uint32_t> light);
     /// Refines texels of a field whose light was read last.
-    /// @param share  of all texels, at most
-    Status refine(FieldData& lit, float share);
+    /// @param share   of all texels, at most
+    /// @param layout  where; null: found
+    Status refine(FieldData& lit, float share, LightLayout* layout = nullptr);
     uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
 
 private:

@@ -9,12 +9,23 @@
 #include <glm/glm.hpp>
 
 #include "base/knobs.h"
+#include "scene/light_groups.h"
 #include "shaders/shared/lamps.h"
 #include "shaders/shared/light_field.h"
 #include "svo/octree.h"
 
 namespace sconce
 {
+
+/// The share that some of a scene's lights have in all light that a field holds. Light is linear: the sum of all groups' shares, each times
+/// a weight, is the field in other light (shaders/shared/group_mix.h).
+struct LightGroup
+{
+    LightGroupDesc which;                                                  // in the scene
+    glm::vec3 sky{0.0f};                                                   // of info.sky
+    std::vector<glm::vec3> lamps;                                          // of FieldData::lamps, their radiance
+    std::vector<uint32_t> radiance, irradiance, prefiltered, surfaceLight; // as the field's; what is no light in them is the same in all
+};
 
 /// A baked light field in host memory: what a .sconce file holds. Layouts of the words: shaders/shared/light_field.h.
 struct FieldData
@@ -34,6 +45,7 @@ struct FieldData
                                         // [cell][kCellWords]: light_cells.h; empty: baked without
     std::vector<gpu::Lamp> lamps;       // at most gpu::kMostLamps; only with surface light
     std::vector<uint32_t> lampMaps;     // theirs, one after another; firstWord counts the lamps' own words, too
+    std::vector<LightGroup> groups;     // at most kMostLightGroups; what stands above is their sum. Empty: baked as one
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -49,7 +61,8 @@ struct FieldBytes
     size_t prefiltered = 0;                                                    // of the radiance
     size_t lamps = 0;                                                          // with their maps: of the irradiance
     size_t surface = 0, cells = 0, refined = 0, hidden = 0; // surface light with all that follows its texels, and that: of the irradiance
-    size_t total() const { return distance + normals + radiance + irradiance + index; }
+    size_t groups = 0;                                      // shares of light groups
+    size_t total() const { return distance + normals + radiance + irradiance + index + groups; }
 };
 FieldBytes bytesByPart(const FieldData& field);
 

@@ -81,6 +81,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.gpu = gpu.shared_from_this();
     made.info = field.info;
     made.effects = field.effects;
+    made.groupCount = uint32_t(field.groups.size());
     struct Part
     {
         Buffer& buffer;

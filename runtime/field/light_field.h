@@ -15,7 +15,7 @@ struct LightField::State
     std::shared_ptr<Gpu> gpu;
     gpu::LightFieldInfo info{};
     Buffer block, probes, distance, radiance, irradiance, prefiltered, surface, patches, lamps;
-    uint32_t lampCount = 0;
+    uint32_t lampCount = 0, groupCount = 0;
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
     GpuImage octree;
     DescriptorSet set;

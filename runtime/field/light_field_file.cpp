@@ -90,11 +90,12 @@ enum Section : uint32_t
     surface,     // since version 5
     lamps,       // these two since version 6
     lampMaps,
+    groupShares, // since version 7: of each group its radiance, irradiance, prefiltered radiance, surface light
     sectionCount
 };
 constexpr const char* kSectionNames[sectionCount] = {"meta",          "info",   "probes",        "distance",    "radiance",
                                                      "irradiance",    "octree", "octree texels", "prefiltered", "patches",
-                                                     "surface light", "lamps",  "lamp maps"};
+                                                     "surface light", "lamps",  "lamp maps",     "light groups"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader
@@ -181,6 +182,7 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         texels && cells ? product({*texels + *cells + uint64_t(gpu::kFineWords) * i.refinedTexels + hiddenWords(i), 4}) : std::nullopt,
         rawBytes[lamps], // lampProblem() looks at these two
         rawBytes[lampMaps],
+        rawBytes[groupShares], // groupProblem() looks at these
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
@@ -269,6 +271,38 @@ std::string lampProblem(const FieldData& field)
     return next == words ? "" : "its lamps' maps have another size than its lamps say";
 }
 
+/// Words of a light group's shares, in the order of the file.
+constexpr std::vector<uint32_t> LightGroup::*kShares[] = {&LightGroup::radiance, &LightGroup::irradiance, &LightGroup::prefiltered,
+                                                          &LightGroup::surfaceLight};
+constexpr std::vector<uint32_t> FieldData::*kShared[] = {&FieldData::radiance, &FieldData::irradiance, &FieldData::prefiltered,
+                                                         &FieldData::surfaceLight};
+
+/// What is wrong with the light groups; empty when the shares have the field's places.
+std::string groupProblem(const FieldData& field)
+{
+    if (field.groups.size() > kMostLightGroups)
+        return fmt::format("it has {} light groups, above {}", field.groups.size(), kMostLightGroups);
+    if (!field.groups.empty() && field.surfaceLight.empty()) return "it has light groups and no surface light";
+    const size_t texels = size_t(6) * field.info.surfaceSize * field.info.surfaceSize * field.info.probeCount;
+    for (const LightGroup& group : field.groups)
+    {
+        const std::string& name = group.which.name;
+        if (!finite(group.sky) || group.lamps.size() != field.lamps.size() ||
+            !std::ranges::all_of(group.lamps, [](vec3 x) { return finite(x); }))
+            return fmt::format("the sky or the lamps of light group '{}' are not as the field's", name);
+        for (size_t i = 0; i < std::size(kShares); ++i)
+            if ((group.*kShares[i]).size() != (field.*kShared[i]).size())
+                return fmt::format("the shares of light group '{}' have another size than the field's light", name);
+        for (size_t texel = 0; texel < texels; ++texel)
+        {
+            const uint32_t word = group.surfaceLight[texel], own = field.surfaceLight[texel];
+            if (std::max(word, own) >= gpu::kRefinedWord && word != own)
+                return fmt::format("texel {} of light group '{}' is refined to other ones than the field's", texel, name);
+        }
+    }
+    return {};
+}
+
 /// What is wrong with the values that addressing relies on; empty when all is well.
 std::string contentProblem(const FieldData& field)
 {
@@ -281,6 +315,7 @@ std::string contentProblem(const FieldData& field)
     if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
         return "its scene bounds are not finite";
     if (std::string problem = lampProblem(field); !problem.empty()) return problem;
+    if (std::string problem = groupProblem(field); !problem.empty()) return problem;
     const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
     const size_t texels = size_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount;
     for (size_t texel = 0; texel < std::min(texels, field.surfaceLight.size()); ++texel)
@@ -332,7 +367,51 @@ std::string metaText(const FieldData& field)
     json["bounces"] = field.bounces;
     json["effects"] = field.effects;
     json["probes"] = field.info.probeCount;
+    const auto numbers = [](vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+    for (const LightGroup& group : field.groups)
+    {
+        nlohmann::ordered_json one = {{"name", group.which.name}, {"members", group.which.members}, {"sky", numbers(group.sky)}};
+        one["lamps"] = nlohmann::ordered_json::array();
+        for (const vec3& radiance : group.lamps) one["lamps"].push_back(numbers(radiance));
+        json["groups"].push_back(one);
+    }
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// Three numbers; false where they are none.
+bool applyNumbers(const nlohmann::json& json, vec3& value)
+{
+    if (!json.is_array() || json.size() != 3) return false;
+    for (int i = 0; i < 3; ++i)
+    {
+        if (!json[size_t(i)].is_number()) return false;
+        value[i] = json[size_t(i)].get<float>();
+    }
+    return true;
+}
+
+/// The light groups but their words.
+bool applyGroups(const nlohmann::json& json, std::vector<LightGroup>& groups)
+{
+    if (!json.is_array() || json.size() > kMostLightGroups) return false;
+    for (const nlohmann::json& one : json)
+    {
+        LightGroup group;
+        if (!one.is_object() || !one.contains("name") || !one["name"].is_string() || !one.contains("members") ||
+            !one["members"].is_array() || !one.contains("sky") || !applyNumbers(one["sky"], group.sky) || !one.contains("lamps") ||
+            !one["lamps"].is_array() || one["lamps"].size() > gpu::kMostLamps)
+            return false;
+        group.which.name = one["name"].get<std::string>();
+        for (const nlohmann::json& member : one["members"])
+        {
+            if (!member.is_string()) return false;
+            group.which.members.push_back(member.get<std::string>());
+        }
+        for (const nlohmann::json& lamp : one["lamps"])
+            if (!applyNumbers(lamp, group.lamps.emplace_back())) return false;
+        groups.push_back(std::move(group));
+    }
+    return true;
 }
 
 /// False when the text is not what metaText() writes.
@@ -356,7 +435,7 @@ bool applyMeta(std::string_view text, FieldData& field)
         if (!effect.is_string()) return false;
         field.effects.push_back(effect.get<std::string>());
     }
-    return true;
+    return !json.contains("groups") || applyGroups(json["groups"], field.groups);
 }
 
 /// An open file of known size.
@@ -528,6 +607,10 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
 {
     const OctreeHeader treeHeader = headerOf(field.octree);
     const std::string text = metaText(field);
+    std::vector<uint32_t> shares;
+    for (const LightGroup& group : field.groups)
+        for (const auto part : kShares) shares.insert(shares.end(), (group.*part).begin(), (group.*part).end());
+    const uint32_t sectionsHere = field.groups.empty() ? uint32_t(groupShares) : uint32_t(sectionCount);
     const std::span<const std::byte> sections[sectionCount] = {
         std::as_bytes(std::span(text)),
         bytesOf(field.info),
@@ -542,9 +625,10 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
         std::as_bytes(std::span(field.surfaceLight)),
         std::as_bytes(std::span(field.lamps)),
         std::as_bytes(std::span(field.lampMaps)),
+        std::as_bytes(std::span(shares)),
     };
-    uint64_t rawBytes[sectionCount], blockCount = 0;
-    for (uint32_t section = 0; section < sectionCount; ++section)
+    uint64_t rawBytes[sectionCount] = {}, blockCount = 0;
+    for (uint32_t section = 0; section < sectionsHere; ++section)
     {
         rawBytes[section] = sections[section].size();
         // An empty section has one block, of 0 bytes.
@@ -560,10 +644,11 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     uint64_t offset = sizeof(Header) + blockCount * sizeof(Block);
     if (Status status = file->append(Bytes(offset)); !status) return status;
     std::vector<Block> blocks;
-    for (uint32_t section = 0; section < sectionCount; ++section)
+    for (uint32_t section = 0; section < sectionsHere; ++section)
         if (Status status = appendSection(*file, Section(section), sections[section], offset, blocks); !status) return status;
 
-    Header header{{}, kFieldFileVersion, uint32_t(blocks.size()), offset + sizeof(Footer), checksum(std::as_bytes(std::span(blocks))), 0};
+    Header header{{}, fileVersionOf(field), uint32_t(blocks.size()), offset + sizeof(Footer), checksum(std::as_bytes(std::span(blocks))),
+                  0};
     std::memcpy(header.magic, kMagic, sizeof(kMagic));
     header.headerChecksum = checksum(bytesOf(header).first(offsetof(Header, headerChecksum)));
     Footer footer{header.headerChecksum, {}};
@@ -607,6 +692,13 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     if (const std::string problem = sizeProblem(field.info, treeHeader, rawBytes); !problem.empty()) return reader->damage(problem);
     applyHeader(treeHeader, field.octree);
     text.resize(rawBytes[meta]);
+    if (Status status = readInto(meta, std::as_writable_bytes(std::span(text))); !status) return status.error();
+    if (!applyMeta(text, field)) return reader->damage("block 'meta' is not the JSON text it should be");
+    const uint64_t ofGroup = rawBytes[radiance] + rawBytes[irradiance] + rawBytes[prefiltered] + rawBytes[surface];
+    if (rawBytes[groupShares] != field.groups.size() * ofGroup)
+        return reader->damage(
+            fmt::format("its section '{}' has another size than its {} groups", kSectionNames[groupShares], field.groups.size()));
+    std::vector<uint32_t> shares(rawBytes[groupShares] / sizeof(uint32_t));
     field.probes.resize(rawBytes[probes] / sizeof(gpu::ProbeHeader));
     field.distance.resize(rawBytes[distance] / sizeof(uint32_t));
     field.radiance.resize(rawBytes[radiance] / sizeof(uint32_t));
@@ -618,7 +710,6 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     field.lamps.resize(rawBytes[lamps] / sizeof(gpu::Lamp));
     field.lampMaps.resize(rawBytes[lampMaps] / sizeof(uint32_t));
     const std::pair<Section, std::span<std::byte>> parts[] = {
-        {meta, std::as_writable_bytes(std::span(text))},
         {probes, std::as_writable_bytes(std::span(field.probes))},
         {distance, std::as_writable_bytes(std::span(field.distance))},
         {radiance, std::as_writable_bytes(std::span(field.radiance))},
@@ -629,10 +720,18 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {surface, std::as_writable_bytes(std::span(field.surfaceLight))},
         {lamps, std::as_writable_bytes(std::span(field.lamps))},
         {lampMaps, std::as_writable_bytes(std::span(field.lampMaps))},
+        {groupShares, std::as_writable_bytes(std::span(shares))},
     };
     for (const auto& [section, raw] : parts)
         if (Status status = readInto(section, raw); !status) return status.error();
-    if (!applyMeta(text, field)) return reader->damage("block 'meta' is not the JSON text it should be");
+    auto word = shares.cbegin();
+    for (LightGroup& group : field.groups)
+        for (size_t i = 0; i < std::size(kShares); ++i)
+        {
+            const auto end = word + std::ptrdiff_t((field.*kShared[i]).size());
+            (group.*kShares[i]).assign(word, end);
+            word = end;
+        }
     if (const std::string problem = contentProblem(field); !problem.empty()) return reader->damage(problem);
     return field;
 }

@@ -330,11 +330,12 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     // Without a frame before, or after a cut, view.follows stays 0 and histories count for nothing.
     if (before)
     {
-        view.follows = 1;
+        view.follows = changing > 0 ? gpu::kFollowsChange : 1;
         view.eyeBefore = before->eye;
         view.clipFromWorldBefore = clipFromWorld(*before, basisOf(*before, settings.width, settings.height));
     }
     before = camera;
+    changing -= changing > 0 ? 1 : 0;
     // In metres; as a share of the diagonal the setting fits scenes of any size.
     view.normalOffset = settings.normalOffset * space.diagonal * space.scale;
 

@@ -54,6 +54,8 @@ public:
     Result<RenderedFrame> render(const Camera& camera, uint32_t index = 0);
     /// The next frame doesn't follow the one before: the camera is cut.
     void cut() { before.reset(); }
+    /// Light is another from the next frame on: histories forget what was.
+    void lightChanged() { changing = gpu::kChangeFrames; }
     /// Bytes of the images and buffers of indirect light, as many as its effects call for.
     uint64_t deviceBytes() const;
 
@@ -80,6 +82,7 @@ private:
     DescriptorSet directSet, areaSet, composeSet;
     Denoiser denoiser;
     std::optional<Camera> before; // the camera of the frame before
+    uint32_t changing = 0;        // frames to come of changed light
     Buffer frameBlock;
     FrameInputs gBuffer;
     std::optional<IndirectLight> indirect;

@@ -13,11 +13,15 @@ struct FrameView
     uint glossyRays;     // rays a pixel, 1..64
     float normalOffset;  // metres a ray starts off its surface; 1e-4 of the scene's diagonal
     float raysBelow;     // roughness: reflections below it are traced, above it read from prefiltered radiance; default kRaysBelow
-    uint follows;        // 1: the frame follows the one that was recorded before; 0: it is the first, or the camera was cut
+    uint follows;        // 1: the frame follows the one that was recorded before; 0: it is the first, or the camera was cut; more: it follows, and
+                         // a history counts for at most so many frames, since light has changed: see kFollowsChange
     vec3 eyeBefore;      // of the frame before, world, metres
     mat4 clipFromWorldBefore; // x and y in [-1,1] over the picture before, w > 0 in front of the camera
 };
 SCONCE_CHECK_SIZE(FrameView, 180);
+
+const uint kFollowsChange = 3u; // for kChangeFrames frames after light has changed: what was before has then faded to (2/3)^8 = 4 %
+const uint kChangeFrames = 8u;
 
 const float kRaysBelow = 0.4f;   // roughness
 const float kRaysBlend = 0.05f;  // either side of raysBelow both are made and blended, so that no seam shows in a roughness texture

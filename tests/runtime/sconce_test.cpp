@@ -143,6 +143,58 @@ TEST_F(Door, RecordsOfOneTracerDoNotDisturbEachOther)
     }
 }
 
+// A lamp and the sky, each of which a host switches: in the command buffer in which it is recorded, at the rays that are traced after it.
+TEST_F(Door, LightGroupsAreSwitchedInTheFrameThatRecordsIt)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    auto scene = makeBuiltinScene("cornell-glossy");
+    ASSERT_TRUE(scene);
+    scene->sky = vec3(0.5f);
+    BakeDesc desc;
+    desc.resolution = 64;
+    desc.bounces = 1;
+    desc.groups = {{"lamp", {"emitters"}}, {"sky", {"sky"}}};
+    const std::string grouped = *folder / "grouped.sconce";
+    const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}, {0.3f, 0.5f, 0.3f}};
+    const Status baked = bakeLightField(*device, *scene, probes, desc, grouped);
+    ASSERT_TRUE(baked) << baked.error().message;
+    const auto field = LightField::load(*device, grouped);
+    ASSERT_TRUE(field) << field.error().message;
+    const auto other = LightField::load(*device, file());
+    ASSERT_TRUE(other);
+    EXPECT_FALSE(LightGroups::load(*device, *field, file()));
+    EXPECT_FALSE(LightGroups::load(*device, *other, grouped)) << "of another field";
+    auto groups = LightGroups::load(*device, *field, grouped);
+    ASSERT_TRUE(groups) << groups.error().message;
+    EXPECT_EQ(groups->names(), (std::vector<std::string>{"lamp", "sky"}));
+    EXPECT_EQ(groups->set(std::vector<vec3>{vec3(1.0f)}).error().code, ErrorCode::badArgument);
+
+    const auto tracer = RayTracer::create(*device, *field);
+    ASSERT_TRUE(tracer);
+    const std::vector<gpu::Ray> asked = rays(200, 0.0f);
+    const auto lightBy = [&](vec3 lamp, vec3 sky)
+    {
+        EXPECT_TRUE(groups->set(std::vector<vec3>{lamp, sky}));
+        EXPECT_TRUE(device->gpu().submit([&](VkCommandBuffer cmd) { groups->record(cmd); }));
+        std::vector<gpu::RayHit> hits(asked.size());
+        EXPECT_TRUE(tracer->trace(asked, hits));
+        glm::dvec3 sum(0.0);
+        for (const gpu::RayHit& hit : hits) sum += glm::dvec3(hit.radiance);
+        return sum;
+    };
+    const glm::dvec3 both = lightBy(vec3(1.0f), vec3(1.0f)), lamp = lightBy(vec3(1.0f), vec3(0.0f)), sky = lightBy(vec3(0.0f), vec3(1.0f));
+    for (int c = 0; c < 3; ++c)
+    {
+        EXPECT_GT(lamp[c], 0.0);
+        EXPECT_GT(sky[c], 0.0);
+        EXPECT_NEAR(lamp[c] + sky[c], both[c], 0.02 * both[c]) << "steps of R11G11B10F";
+    }
+    EXPECT_EQ(lightBy(vec3(0.0f), vec3(0.0f)), glm::dvec3(0.0));
+    EXPECT_EQ(lightBy(vec3(0.0f, 1.0f, 0.0f), vec3(0.0f)).x, 0.0);
+}
+
 TEST_F(Door, RefusesAHeaderOfAnotherVersion)
 {
     ValidatedDevice owner;

@@ -15,8 +15,8 @@ namespace
 
 std::vector<std::string> benchInto(const std::string& folder, const std::string& frames = "2")
 {
-    return {"bench", "cornell", "-o",  folder,     "--methods-only", "--probes", "2", "--resolution", "64", "--size",
-            "32x18", "--rays",  "500", "--frames", frames,           "--spp",    "4", "--bounces",    "0"};
+    return {"bench",  "cornell", "-o",     folder, "--methods-only", "--quick-grids", "--probes", "2", "--resolution", "64",
+            "--size", "32x18",   "--rays", "500",  "--frames",       frames,          "--spp",    "4", "--bounces",    "0"};
 }
 
 json resultsIn(const std::string& folder)

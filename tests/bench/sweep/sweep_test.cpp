@@ -51,7 +51,7 @@ std::unique_ptr<SceneBench> benchOfCornell(ValidatedDevice& device, const TestFo
     desc.settings.rays = 500;
     desc.settings.frames = desc.settings.warmUp = 1;
     desc.settings.referencePaths = 4;
-    desc.settings.pictures = false;
+    desc.settings.pictures = desc.settings.judgeGrids = false;
     auto bench = SceneBench::create(device.gpu(), "device", std::move(desc), first.settings, {});
     EXPECT_TRUE(bench) << bench.error().message;
     return std::move(*bench);

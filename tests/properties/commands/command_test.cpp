@@ -14,8 +14,8 @@ using nlohmann::json;
 namespace
 {
 
-const std::vector<std::string> kCommands = {"scenes", "doctor", "check",     "place",   "bake",  "info", "verify",
-                                            "render", "trace",  "reference", "compare", "bench", "tune", "knobs"};
+const std::vector<std::string> kCommands = {"scenes",  "doctor", "check",     "place",   "bake",  "info", "verify", "render",
+                                            "relight", "trace",  "reference", "compare", "bench", "tune", "knobs"};
 
 /// stdout as JSON; a failure prints everything there was.
 json jsonOf(const CommandResult& result)
@@ -423,6 +423,62 @@ TEST(Command, RenderWritesTheLayersThatWereAskedFor)
     EXPECT_EQ(jsonOf(render("wang.exr", {"--tracer", "wang", "--json"})).at("tracer"), "wang");
     EXPECT_EQ(sconceCommand({"render", "cornell", "--field", folder / "none.sconce", "-o", folder / "x.exr"}).exit, 5);
     EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
+}
+
+// Light groups from bake to picture: dimmed live, dimmed in the file and path-traced in the dimmed scene are the same light.
+TEST(Command, LightGroupsAreDimmedInPicturesFilesAndReferences)
+{
+    const TestFolder folder;
+    const std::vector<std::string> scene = {"cornell", "--sky", "2,2,2"};
+    const auto with = [&](const char* command, std::vector<std::string> more)
+    {
+        std::vector<std::string> arguments{command};
+        arguments.insert(arguments.end(), scene.begin(), scene.end());
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return sconceCommand(arguments);
+    };
+    ASSERT_EQ(with("place", {"-o", folder / "p.json", "--count", "4", "-q"}).exit, 0);
+    const std::vector<std::string> bake = {"--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "64", "--json"};
+    const auto grouped = [&](std::vector<std::string> groups)
+    {
+        groups.insert(groups.begin(), bake.begin(), bake.end());
+        return with("bake", groups);
+    };
+    expectSentence(grouped({"--group", "lamp="}), 2, "lamp=");
+    expectSentence(grouped({"--group", "moon", "-q"}), 2, "no light 'moon'");
+    const json baked = jsonOf(grouped({"--group", "lamp=emitters"}));
+    ASSERT_EQ(baked["light_groups"].size(), 2u) << baked;
+    EXPECT_EQ(baked["light_groups"][0]["name"], "lamp");
+    EXPECT_EQ(baked["light_groups"][1]["name"], "rest");
+    EXPECT_EQ(baked["format_version"], 7);
+    EXPECT_GT(baked["bytes"]["light_groups"], 0);
+    EXPECT_NE(sconceCommand({"info", folder / "f.sconce"}).out.find("lamp=emitters rest"), std::string::npos);
+
+    const json relit = jsonOf(
+        sconceCommand({"relight", folder / "f.sconce", "-o", folder / "dim.sconce", "--dim", "lamp=0.5", "--dim", "rest=0,0,2", "--json"}));
+    EXPECT_EQ(relit["light_groups"].size(), 0u);
+    EXPECT_EQ(relit["format_version"], 6) << "a static field has nothing of groups";
+    expectSentence(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "x.sconce", "--dim", "moon=1"}), 2, "lamp, rest");
+    expectSentence(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "x.sconce", "--dim", "lamp=bright"}), 2, "lamp=bright");
+    expectSentence(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "x.sconce", "--dim", "lamp=-1"}), 2, "'lamp'");
+    expectSentence(sconceCommand({"relight", folder / "dim.sconce", "-o", folder / "x.sconce", "--dim", "lamp=1"}), 2, "--group");
+
+    const std::vector<std::string> dims = {"--dim", "lamp=0.5", "--dim", "rest=0,0,2"};
+    const auto drawn = [&](const char* command, std::vector<std::string> more, const char* picture)
+    {
+        more.insert(more.end(), {"--size", "64x36", "-o", folder / picture, "-q"});
+        return with(command, more);
+    };
+    const auto and_ = [&](std::vector<std::string> some) { return some.insert(some.end(), dims.begin(), dims.end()), some; };
+    ASSERT_EQ(drawn("render", and_({"--field", folder / "f.sconce"}), "live.exr").exit, 0);
+    ASSERT_EQ(drawn("render", {"--field", folder / "dim.sconce"}, "file.exr").exit, 0);
+    ASSERT_EQ(drawn("reference", and_({"--group", "lamp=emitters", "--spp", "256", "--pixel-centre", "--bounces", "8"}), "truth.exr").exit,
+              0);
+    const auto compared = [&](const char* picture, const char* reference) {
+        return jsonOf(sconceCommand({"compare", folder / picture, folder / reference, "--layer", "diffuse_indirect", "--json"}));
+    };
+    EXPECT_EQ(compared("live.exr", "file.exr").at("mse"), 0.0);
+    EXPECT_NEAR(compared("live.exr", "truth.exr").at("mean").get<double>(), 1.0, 0.06);
 }
 
 TEST(Command, ReferenceAndCompareAgree)

@@ -64,6 +64,7 @@ protected:
         bake.prefiltered = false; // 40 ms a probe, and the plan's rough pass is left out for it
         bake.octree.voxels = 32;
         bake.surfaceTexels = 26;
+        bake.surfaceRays = 16;
         bake.scene.light = {
             .emitterSamples = 6, .skySamples = 8, .sunShadow = 512, .pointShadow = 64, .emitterShadow = 64, .skyShadow = 128};
         BakeReport report;

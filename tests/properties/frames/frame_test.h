@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "runtime/bake/bake.h"
 #include "runtime/scene/scene_renderer.h"
 #include "tests/support/device.h"
@@ -11,6 +13,8 @@ namespace sconce::testing_support
 class FrameTest : public DeviceTest
 {
 protected:
+    static constexpr uint32_t kFewTexels = 26;
+
     static RenderSettings settingsOf(uint32_t side)
     {
         RenderSettings settings;
@@ -18,12 +22,14 @@ protected:
         return settings;
     }
 
-    /// @param surfaceTexels  by default as few as there are: most tests are about something else
+    /// @param surfaceTexels  by default few, lit by few rays: most tests are about something else
+    /// @param surfaceRays    none: few for few texels, else the bake's own
     Result<FieldData> bakeField(const Scene& scene, std::span<const vec3> probes, uint32_t resolution = 128, uint32_t bounces = 2,
-                                uint32_t surfaceTexels = 26)
+                                uint32_t surfaceTexels = kFewTexels, std::optional<uint32_t> surfaceRays = {})
     {
         BakeSettings bake;
         bake.surfaceTexels = surfaceTexels;
+        bake.surfaceRays = surfaceRays.value_or(surfaceTexels == kFewTexels ? 16 : bake.surfaceRays);
         bake.resolution = resolution;
         bake.bounces = bounces;
         BakeReport report;

@@ -39,7 +39,7 @@ TEST_F(FurnaceTest, ReflectsWhatThePathTracerSaysWithinOnePercent)
          {std::pair{0.0f, 1.0f}, {0.2f, 1.0f}, {0.3f, 0.0f}, {0.4f, 1.0f}, {0.6f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}})
     {
         const Scene scene = ball(vec3(1.0f), roughness, metallic);
-        const auto field = bakeField(scene, probes, 64, 0);
+        const auto field = bakeField(scene, probes, 64, 0, kFewTexels, knobs::surfaceRays.value);
         ASSERT_TRUE(field) << field.error().message;
         RenderSettings settings = settingsOf(kSide);
         settings.glossyRays = 8;

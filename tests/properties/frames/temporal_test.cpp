@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/bake/group_bake.h"
+#include "runtime/field/light_groups.h"
 #include "scene/builtin_scenes.h"
 #include "tests/properties/frames/frame_test.h"
 #include "tests/properties/hard_cases/hard_case.h"
@@ -74,6 +76,54 @@ TEST_F(TemporalTest, AStillPictureConverges)
     for (uint32_t i = 1; i < 24; ++i) frame = many->render(scene.cameras.front(), i);
     ASSERT_TRUE(frame && truth);
     EXPECT_LT(difference(*frame, *truth), 0.6 * first);
+}
+
+// Told that light has changed, a history forgets what was in eight frames; untold, it holds on to it.
+TEST_F(TemporalTest, ASwitchedLightIsThereWithinEightFrames)
+{
+    Scene lit = scene;
+    lit.sky = vec3(0.4f);
+    BakeSettings bake;
+    bake.resolution = 64;
+    bake.bounces = 2;
+    bake.surfaceTexels = kFewTexels;
+    BakeReport report;
+    const std::vector<vec3> probes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}};
+    const auto baked = bakeLightGroups(gpu().host, lit, probes, bake, {{"lamp", {"emitters"}}, {"sky", {"sky"}}}, {}, report);
+    ASSERT_TRUE(baked) << baked.error().message;
+    field.emplace(std::move(*makeLightField(gpu(), *baked)));
+    auto groups = makeLightGroups(gpu(), *field, *baked);
+    ASSERT_TRUE(groups);
+    const auto lightBy = [&](float lamp)
+    {
+        EXPECT_TRUE(groups->set(std::vector<vec3>{vec3(lamp), vec3(1.0f)}));
+        EXPECT_TRUE(gpu().submit([&](VkCommandBuffer cmd) { groups->record(cmd); }));
+    };
+    const Camera& camera = scene.cameras.front();
+    const auto glossyOf = [](const RenderedFrame& frame)
+    {
+        double sum = 0.0;
+        for (const vec3& light : frame.glossyIndirect) sum += double(light.g);
+        return sum;
+    };
+    lightBy(0.0f);
+    const double off = glossyOf(*renderer(false, 64)->render(camera));
+    for (const bool told : {true, false})
+    {
+        lightBy(1.0f);
+        const auto blended = renderer(true, 4);
+        double on = 0.0, left = 0.0;
+        for (uint32_t i = 0; i < 32; ++i) on = glossyOf(*blended->render(camera, i));
+        lightBy(0.0f);
+        if (told) blended->lightChanged();
+        for (uint32_t i = 0; i < gpu::kChangeFrames; ++i) left = glossyOf(*blended->render(camera, 32 + i));
+        const double share = (left - off) / (on - off); // of the lamp's light
+        EXPECT_GT(on, 1.5 * off) << "there is something to tell";
+        if (told)
+            EXPECT_LT(std::abs(share), 0.06) << "(2/3)^8 and the noise of a frame";
+        else
+            EXPECT_GT(share, 0.3);
+    }
 }
 
 TEST_F(TemporalTest, AMovingPictureFlickersAtMostHalfMoreThanTheScene)

@@ -60,6 +60,7 @@ protected:
         bake.bounces = 1;
         bake.scene = fewSamples();
         bake.surfaceTexels = 26;
+        bake.surfaceRays = 16;
         BakeReport report;
         return bakeLightField(gpu().host, scene, kFewProbes, bake, {}, report);
     }

@@ -70,6 +70,7 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     bake.bounces = 1;
     bake.scene = fewSamples();
     bake.surfaceTexels = 26;
+    bake.surfaceRays = 16;
     BakeReport report;
     const auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
     ASSERT_TRUE(field) << field.error().message;

@@ -52,7 +52,7 @@ TEST_F(VeachAjar, TheDarkRoomHasTheLightOfTheTruth)
     ASSERT_TRUE(probes) << probes.error().message;
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : probes->probes) positions.push_back(probe.position);
-    const auto field = bakeField(*scene, positions, 128, kBounces);
+    const auto field = bakeField(*scene, positions, 128, kBounces, kFewTexels, knobs::surfaceRays.value);
     ASSERT_TRUE(field) << field.error().message;
 
     RenderSettings settings;

@@ -101,8 +101,36 @@ FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8, uint32
     return field;
 }
 
+/// With two light groups, whose shares are not all alike.
+FieldData groupedField()
+{
+    FieldData field = smallField();
+    for (const char* name : {"sun", "lamps"})
+    {
+        LightGroup group{
+            {name, {}},        glm::vec3(0.1f, 0.2f, 1.0f / 3.0f), {glm::vec3(1.5f)}, field.radiance, field.irradiance, field.prefiltered,
+            field.surfaceLight};
+        group.which.members.assign(field.groups.size() + 1, "desk*");
+        group.radiance[3] = 7 + uint32_t(field.groups.size());
+        field.groups.push_back(std::move(group));
+    }
+    return field;
+}
+
 void expectSame(const FieldData& a, const FieldData& b)
 {
+    ASSERT_EQ(a.groups.size(), b.groups.size());
+    for (size_t i = 0; i < a.groups.size(); ++i)
+    {
+        EXPECT_EQ(a.groups[i].which.name, b.groups[i].which.name);
+        EXPECT_EQ(a.groups[i].which.members, b.groups[i].which.members);
+        EXPECT_EQ(a.groups[i].sky, b.groups[i].sky);
+        EXPECT_EQ(a.groups[i].lamps, b.groups[i].lamps);
+        EXPECT_EQ(a.groups[i].radiance, b.groups[i].radiance);
+        EXPECT_EQ(a.groups[i].irradiance, b.groups[i].irradiance);
+        EXPECT_EQ(a.groups[i].prefiltered, b.groups[i].prefiltered);
+        EXPECT_EQ(a.groups[i].surfaceLight, b.groups[i].surfaceLight);
+    }
     EXPECT_EQ(std::memcmp(&a.info, &b.info, sizeof(a.info)), 0);
     ASSERT_EQ(a.probes.size(), b.probes.size());
     EXPECT_TRUE(a.probes.empty() || std::memcmp(a.probes.data(), b.probes.data(), a.probes.size() * sizeof(gpu::ProbeHeader)) == 0);
@@ -306,7 +334,7 @@ TEST_F(LightFieldFile, AnOlderFileSaysItsOwnVersion)
     field.prefiltered.clear();
     field.patches.clear();
     ASSERT_TRUE(saveField(field, file));
-    EXPECT_EQ(loadField(file)->fileVersion, kFieldFileVersion);
+    EXPECT_EQ(loadField(file)->fileVersion, kUngroupedFileVersion);
     std::string bytes = readBytes(file);
     bytes[8] = char(kOldestFieldFileVersion);
     const uint64_t sum = XXH3_64bits(bytes.data(), 32);
@@ -363,6 +391,50 @@ TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
     field = smallField();
     field.probes[1].centre.y = std::numeric_limits<float>::quiet_NaN();
     EXPECT_NE(saveField(field, file).error().message.find("probe 1"), std::string::npos);
+    EXPECT_EQ(filesInFolder(), 0u);
+}
+
+// A field without groups has not a byte of them: neither a section nor a line.
+TEST_F(LightFieldFile, LightGroupsComeBackAndAreNoPartOfOtherFields)
+{
+    const FieldData grouped = groupedField();
+    ASSERT_TRUE(saveField(grouped, file));
+    const Result<FieldData> back = loadField(file);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->fileVersion, kFieldFileVersion);
+    expectSame(grouped, *back);
+    const Result<VerifyReport> report = verifyField(file);
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report->ok());
+    EXPECT_EQ(report->blocks[report->blocks.size() - 2].name, "light groups 0");
+    FieldData plain = grouped;
+    plain.groups.clear();
+    ASSERT_TRUE(saveField(plain, file));
+    EXPECT_EQ(readBytes(file).find("groups"), std::string::npos);
+    EXPECT_EQ(loadField(file)->fileVersion, kUngroupedFileVersion);
+    const Result<VerifyReport> without = verifyField(file);
+    for (const BlockReport& block : without->blocks) EXPECT_EQ(block.name.find("groups"), std::string::npos);
+}
+
+TEST_F(LightFieldFile, LightGroupsThatAreNotTheFieldsAreNotWritten)
+{
+    const auto refusal = [&](const auto& change)
+    {
+        FieldData field = groupedField();
+        change(field);
+        return saveField(field, file).error().message;
+    };
+    EXPECT_NE(
+        refusal([](FieldData& field) { field.groups.resize(kMostLightGroups + 1, field.groups[0]); }).find("17 light groups, above 16"),
+        std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.groups[1].irradiance.pop_back(); }).find("group 'lamps' have another size"),
+              std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.groups[1].lamps.clear(); }).find("lamps of light group 'lamps'"), std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.groups[0].sky.y = std::numeric_limits<float>::quiet_NaN(); }).find("group 'sun'"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal([](FieldData& field) { field.groups[0].surfaceLight[5] = gpu::kRefinedWord + 1; }).find("texel 5 of light group 'sun'"),
+        std::string::npos);
     EXPECT_EQ(filesInFolder(), 0u);
 }
 

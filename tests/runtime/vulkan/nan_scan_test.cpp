@@ -127,6 +127,7 @@ TEST_F(NanScanTest, ABakeAndItsFramesAreCleanAndANaNInTheFieldIsNamedWhereItCome
         bake.chart = chart;
         bake.bounces = 1;
         bake.surfaceTexels = 26;
+        bake.surfaceRays = 16;
         BakeReport report;
         auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
         ASSERT_TRUE(field) << field.error().message;
@@ -204,6 +205,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         bake.chart = chart;
         bake.bounces = 1;
         bake.surfaceTexels = 26;
+        bake.surfaceRays = 16;
         bake.scene.light.sunShadow = 256;
         bake.scene.light.emitterSamples = 8;
         BakeReport report;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+
+#include "runtime/field/field_data.h"
+#include "runtime/sconce.h"
+#include "runtime/vulkan/pipeline.h"
+
+namespace sconce
+{
+
+/// What groups are in the scene.
+std::vector<LightGroupDesc> groupsOf(std::span<const LightGroup> groups);
+
+/// Sets a field's light to its groups' shares, each times its weight: what LightGroups does on the device, by the same text.
+/// @param weights  of the groups, as LightGroups::set() takes them
+/// Errors: badArgument. Cost: a read of each word of each share, on all cores.
+Status mixGroups(FieldData& field, std::span<const vec3> weights);
+
+/// What stands behind the handle LightGroups.
+struct LightGroups::State
+{
+    std::shared_ptr<Gpu> gpu;
+    LightField field;
+    std::vector<LightGroup> groups; // without their words
+    struct Part
+    {
+        uint32_t kind;        // gpu::kMix...
+        const Buffer* target; // of the field
+        uint32_t words;       // of a share
+        Buffer shares;        // [group][word]
+    };
+    std::vector<Part> parts;
+    Buffer weightBuffer;
+    Pipeline pipeline;
+    std::vector<vec3> weights;
+    bool changed = false; // since the last record
+    uint64_t bytes = 0;
+};
+
+/// @param data  that `field` was made from
+/// Errors: as LightGroups::load().
+Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const FieldData& data);
+
+} // namespace sconce
