@@ -26,7 +26,7 @@ struct BakeOptions
     SceneOptions scene;
     BakeSettings settings;
     std::string probes, output, device, effects = "auto", gather{knobs::gather.value};
-    std::vector<std::string> groups;
+    std::vector<std::string> groups, dims;
     uint64_t memoryMb = knobs::deviceMebibytes.value;
     QualityOption quality;
 };
@@ -40,6 +40,8 @@ int runBake(const BakeOptions& options, const Context& context)
     if (!set) return fail(set.error());
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
+    if (!options.dims.empty())
+        if (const Status dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
     // After the files, the likeliest to be wrong.
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device, .memoryBudget = options.memoryMb << 20});
     if (!device) return fail(device.error());
@@ -81,7 +83,7 @@ int runBake(const BakeOptions& options, const Context& context)
         if (!found) return fail(found.error());
         settings.light = &light.emplace(std::move(*found));
     }
-    Result<FieldData> field = groups->empty()
+    Result<FieldData> field = groups->empty() || !options.dims.empty()
                                   ? bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report)
                                   : bakeLightGroups(device->host(), *scene, positions, settings, *groups, consoleProgress(context), report);
     if (!field) return fail(field.error());
@@ -142,6 +144,7 @@ void addBakeCommand(CLI::App& app, Context& context)
         bake, options->groups,
         "Lights that can be switched, dimmed and coloured later (`render --dim`, `relight`, LightGroups), each for a bake more and all "
         "light of the file again");
+    addDims(bake, options->dims, "; the scene is baked in that light, without groups");
     addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
     bake->add_option(
             "--effects", options->effects,

@@ -39,7 +39,7 @@ struct RenderOptions
     PictureOptions pictures;
     std::string field, effects = "auto", tracer = "ours", device;
     QualityOption quality;
-    std::vector<std::string> dims;
+    std::vector<std::string> groups, dims;
     uint32_t width = knobs::width.value, height = knobs::height.value, samples = knobs::glossyRays.value, frames = knobs::drawnFrames.value,
              seed = knobs::frameSeed.value;
     std::optional<float> roughness;
@@ -191,6 +191,8 @@ int runRender(RenderOptions options, const Context& context)
     if (const Status taken = takeQuality(options, settings, tracer); !taken) return fail(taken.error());
     // Before the scene is loaded: a misspelt layer should cost no waiting.
     if (const std::string problem = options.pictures.problem(kFrameLayers); !problem.empty()) return fail(ErrorCode::badArgument, problem);
+    const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
+    if (!groups) return fail(groups.error());
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
@@ -209,11 +211,11 @@ int runRender(RenderOptions options, const Context& context)
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
-    const std::vector<LightGroupDesc> groups = groupsOf(data->groups);
-    const Result<std::vector<vec3>> weights = weightsOf(options.dims, groups);
+    const std::vector<LightGroupDesc> ofField = groupsOf(data->groups);
+    const Result<std::vector<vec3>> weights = weightsOf(ofField.empty() ? std::vector<std::string>() : options.dims, ofField);
     if (!weights) return fail(weights.error());
     if (!options.dims.empty())
-        if (const Status dimmed = dimScene(*scene, groups, options.dims); !dimmed) return fail(dimmed.error());
+        if (const Status dimmed = dimScene(*scene, ofField.empty() ? *groups : ofField, options.dims); !dimmed) return fail(dimmed.error());
 
     // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
     for (const PlannedEffect& effect : plan->effects)
@@ -251,7 +253,7 @@ int runRender(RenderOptions options, const Context& context)
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
     std::optional<double> groupsMs;
-    if (!options.dims.empty())
+    if (!options.dims.empty() && !ofField.empty())
     {
         const Result<double> dimmed = dimField(**gpu, *field, *data, *weights);
         if (!dimmed) return fail(dimmed.error());
@@ -366,7 +368,8 @@ void addRenderCommand(CLI::App& app, Context& context)
     addKnob(command, "--roughness", options->roughness, knobs::roughness, "R");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
     addKnob(command, "--seed", options->seed, knobs::frameSeed);
-    addDims(command, options->dims);
+    addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
+    addDims(command, options->dims, "; of a field's groups its light, too");
     addDevice(command, options->device);
     options->pictures.add(command, kFrameLayers);
     options->quality.add(command);

@@ -55,12 +55,13 @@ Result<std::vector<LightGroupDesc>> groupsOf(std::span<const std::string> texts)
     return groups;
 }
 
-void addDims(CLI::App* command, std::vector<std::string>& dims)
+void addDims(CLI::App* command, std::vector<std::string>& dims, const std::string& then)
 {
     command
         ->add_option("--dim", dims,
                      described("Light of a group times so much, of all or of red, green and blue; 0 switches it off. Give it once for each "
-                               "group",
+                               "group" +
+                                   then,
                                words("as it was baked"), fmt::format("0 to {:.0f}", kMostLightWeight)))
         ->expected(1)
         ->take_all()

@@ -15,8 +15,8 @@ void addGroups(CLI::App* command, std::vector<std::string>& groups, const std::s
 /// Errors: badArgument.
 Result<std::vector<LightGroupDesc>> groupsOf(std::span<const std::string> texts);
 
-/// --dim NAME=W or NAME=R,G,B, of light groups, any number of times.
-void addDims(CLI::App* command, std::vector<std::string>& dims);
+/// --dim NAME=W or NAME=R,G,B, of light groups, any number of times. @param then  what the command does besides
+void addDims(CLI::App* command, std::vector<std::string>& dims, const std::string& then = {});
 
 /// Weights of all groups; 1 where none is given. Errors: badArgument: what isn't as above, a group that the field lacks.
 Result<std::vector<vec3>> weightsOf(std::span<const std::string> dims, std::span<const LightGroupDesc> groups);
