@@ -181,9 +181,9 @@ void LightGroups::record(VkCommandBuffer cmd, GpuTimer* timer) noexcept
     const Gpu& gpu = *state.gpu;
     LightField::State& field = state.field.state();
     if (timer) timer->begin(cmd, "light groups");
-    // Whoever reads the field's light, or its weights, in work submitted before has done so: a write after it.
-    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0,
-                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, 0);
+    // Whoever reads the field's light, or its weights, in work submitted before has done so, and what an earlier record wrote is written.
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT);
     gpu.vk.CmdUpdateBuffer(cmd, state.weightBuffer.handle(), 0, state.weights.size() * sizeof(vec3), state.weights.data());
     field.info.sky = mixedSky(state.groups, state.weights);
     gpu.vk.CmdUpdateBuffer(cmd, field.block.handle(), offsetof(gpu::FieldBlock, field) + offsetof(gpu::LightFieldInfo, sky), sizeof(vec3),

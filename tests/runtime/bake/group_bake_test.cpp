@@ -225,10 +225,68 @@ TEST_F(GroupBake, TheDeviceMixesTheHostsWords)
         EXPECT_EQ(wordsOf(state.surface, host.surfaceLight.size()), host.surfaceLight);
         EXPECT_EQ(field->info().sky, host.info.sky);
     }
+    // Twice in one command buffer: the later counts.
+    ASSERT_TRUE(gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            for (const float lamp : {0.0f, 3.0f})
+            {
+                EXPECT_TRUE(groups->set(std::vector<vec3>{vec3(lamp), vec3(1.0f), vec3(1.0f)}));
+                groups->record(cmd);
+            }
+        }));
+    EXPECT_EQ(wordsOf(field->state().radiance, room().radiance.size()), mixed(room(), {vec3(3.0f), vec3(1.0f), vec3(1.0f)}).radiance);
     const std::vector<uint32_t> before = wordsOf(field->state().surface, room().surfaceLight.size());
     EXPECT_FALSE(groups->set(std::vector<vec3>{vec3(1.0f), vec3(-1.0f), vec3(1.0f)}));
     ASSERT_TRUE(gpu.submit([&](VkCommandBuffer cmd) { groups->record(cmd); }));
     EXPECT_EQ(wordsOf(field->state().surface, room().surfaceLight.size()), before) << "what was refused changes nothing";
+}
+
+// Where textures bend normals, light leans: a group's own way while it is alone on, and by how bright each is where several are.
+TEST_F(GroupBake, LightLeansAsTheGroupsThatAreOn)
+{
+    const auto bent = [](Scene scene)
+    {
+        scene.images.push_back({"flat", 1, 1, {128, 128, 255, 255}});
+        scene.materials[0].normalTexture.image = 0;
+        return scene;
+    };
+    const auto field = baked(bent(litRoom()), kGroups);
+    ASSERT_TRUE(field) << field.error().message;
+    ASSERT_EQ(field->info.surfaceDirections, 1u);
+    for (const std::vector<vec3>& weights :
+         {std::vector<vec3>{vec3(1.0f), vec3(0.0f), vec3(0.0f)}, std::vector<vec3>{vec3(0.0f), vec3(1.0f), vec3(0.0f)},
+          std::vector<vec3>{vec3(0.5f), vec3(0.2f), vec3(2.0f, 1.0f, 1.0f)}})
+    {
+        const FieldData switched = mixed(*field, weights);
+        const auto fresh = baked(bent(dimmed(weights)), {});
+        ASSERT_TRUE(fresh) << fresh.error().message;
+        const bool alone = weights[2] == vec3(0.0f);
+        Text ours(switched, {}), theirs(*fresh, {});
+        double off = 0.0, all = 0.0;
+        for (uint32_t i = 0; i < ours.surfaceTexels(); ++i)
+        {
+            const uint32_t word = switched.surfaceLight[i];
+            if (word == 0 || word == Text::kBlackWord || Text::isRefined(word) || Text::isRefined(fresh->surfaceLight[i])) continue;
+            const double light = double(Text::luminance(Text::unpackSharedExponent(word)));
+            const double apart = double(glm::length(ours.tiltOf(i) - theirs.tiltOf(i)));
+            if (alone) ASSERT_EQ(apart, 0.0) << i;
+            off += light * apart;
+            all += light;
+        }
+        EXPECT_GT(all, 0.0);
+        EXPECT_LT(off / all, 0.03) << "steps of a tilt are 0.016";
+    }
+    auto light = makeLightField(device.gpu(), *field);
+    ASSERT_TRUE(light);
+    auto groups = makeLightGroups(device.gpu(), *light, *field);
+    ASSERT_TRUE(groups);
+    const std::vector<vec3> weights{vec3(0.5f), vec3(0.2f), vec3(2.0f, 1.0f, 1.0f)};
+    ASSERT_TRUE(groups->set(weights));
+    ASSERT_TRUE(device.gpu().submit([&](VkCommandBuffer cmd) { groups->record(cmd); }));
+    std::vector<uint32_t> found(field->surfaceLight.size());
+    ASSERT_TRUE(device.gpu().download(light->state().surface, 0, std::as_writable_bytes(std::span(found))));
+    EXPECT_EQ(found, mixed(*field, weights).surfaceLight);
 }
 
 // A lamp that is no part of surface light is dimmed with its group, too.
