@@ -57,7 +57,6 @@ protected:
         bake.bounces = 1;
         bake.scene = samples();
         bake.surfaceTexels = 26;
-        bake.surfaceRays = 16;
         BakeReport report;
         const auto field = bakeLightField(gpu().host, picture.scene, picture.probes, bake, {}, report);
         EXPECT_TRUE(field) << field.error().message;
