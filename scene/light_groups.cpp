@@ -9,12 +9,23 @@ namespace sconce
 namespace
 {
 
-/// Whether a name is as a pattern says, in which * stands for any letters.
+/// Whether a name is as a pattern says, in which * stands for any letters. Only the last star is ever widened, so that no pattern takes
+/// longer than both lengths' product.
 bool matches(std::string_view pattern, std::string_view name)
 {
-    if (pattern.empty()) return name.empty();
-    if (pattern.front() != '*') return !name.empty() && pattern.front() == name.front() && matches(pattern.substr(1), name.substr(1));
-    return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
+    size_t p = 0, n = 0, star = std::string_view::npos, widened = 0;
+    while (n < name.size())
+    {
+        if (p < pattern.size() && pattern[p] == '*')
+            star = p++, widened = n;
+        else if (p < pattern.size() && pattern[p] == name[n])
+            ++p, ++n;
+        else if (star != std::string_view::npos)
+            p = star + 1, n = ++widened;
+        else
+            return false;
+    }
+    return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
 /// One light of a scene, and in which group it is.

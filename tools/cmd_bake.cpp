@@ -41,7 +41,7 @@ int runBake(const BakeOptions& options, const Context& context)
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     if (!options.dims.empty())
-        if (const Status dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
+        if (const auto dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
     // After the files, the likeliest to be wrong.
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device, .memoryBudget = options.memoryMb << 20});
     if (!device) return fail(device.error());

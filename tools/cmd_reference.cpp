@@ -39,7 +39,7 @@ int runReference(const ReferenceOptions& options, const Context& context)
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     if (!groups->empty() || !options.dims.empty())
-        if (const Status dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
+        if (const auto dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
     ReferenceSettings settings = options.settings;

@@ -205,17 +205,19 @@ int runRender(RenderOptions options, const Context& context)
     const Result<EffectPlan> plan = choosePlan(options, *scene);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
-    capScene(*scene, *plan);
     const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
     if (!data) return fail(data.error());
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
-    const std::vector<LightGroupDesc> ofField = groupsOf(data->groups);
-    const Result<std::vector<vec3>> weights = weightsOf(ofField.empty() ? std::vector<std::string>() : options.dims, ofField);
-    if (!weights) return fail(weights.error());
+    std::vector<vec3> weights; // of the field's groups
     if (!options.dims.empty())
-        if (const Status dimmed = dimScene(*scene, ofField.empty() ? *groups : ofField, options.dims); !dimmed) return fail(dimmed.error());
+    {
+        auto dimmed = dimScene(*scene, data->groups.empty() ? *groups : groupsOf(data->groups), options.dims);
+        if (!dimmed) return fail(dimmed.error());
+        if (!data->groups.empty()) weights = std::move(*dimmed);
+    }
+    capScene(*scene, *plan); // after the groups have found their lights
 
     // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
     for (const PlannedEffect& effect : plan->effects)
@@ -253,9 +255,9 @@ int runRender(RenderOptions options, const Context& context)
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
     std::optional<double> groupsMs;
-    if (!options.dims.empty() && !ofField.empty())
+    if (!weights.empty())
     {
-        const Result<double> dimmed = dimField(**gpu, *field, *data, *weights);
+        const Result<double> dimmed = dimField(**gpu, *field, *data, weights);
         if (!dimmed) return fail(dimmed.error());
         groupsMs = *dimmed;
     }

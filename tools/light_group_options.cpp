@@ -87,14 +87,14 @@ Result<std::vector<vec3>> weightsOf(std::span<const std::string> dims, std::span
     return weights;
 }
 
-Status dimScene(Scene& scene, std::vector<LightGroupDesc> groups, std::span<const std::string> dims)
+Result<std::vector<vec3>> dimScene(Scene& scene, std::vector<LightGroupDesc> groups, std::span<const std::string> dims)
 {
     const auto selected = selectLights(scene, groups); // which may name one more
     if (!selected) return selected.error();
-    const auto weights = weightsOf(dims, groups);
-    if (!weights) return weights.error();
+    auto weights = weightsOf(dims, groups);
+    if (!weights) return weights;
     for (size_t g = 0; g < groups.size(); ++g) dimLights(scene, (*selected)[g], (*weights)[g]);
-    return success();
+    return weights;
 }
 
 } // namespace sconce::tools

@@ -21,7 +21,7 @@ void addDims(CLI::App* command, std::vector<std::string>& dims, const std::strin
 /// Weights of all groups; 1 where none is given. Errors: badArgument: what isn't as above, a group that the field lacks.
 Result<std::vector<vec3>> weightsOf(std::span<const std::string> dims, std::span<const LightGroupDesc> groups);
 
-/// A scene in the light that some groups of its lights have by such weights. Errors: as selectLights() and weightsOf().
-Status dimScene(Scene& scene, std::vector<LightGroupDesc> groups, std::span<const std::string> dims);
+/// A scene in the light that some groups of its lights have by such weights, which are returned. Errors: as selectLights() and weightsOf().
+Result<std::vector<vec3>> dimScene(Scene& scene, std::vector<LightGroupDesc> groups, std::span<const std::string> dims);
 
 } // namespace sconce::tools

@@ -27,8 +27,7 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.lamps = field.lamps.size() * sizeof(gpu::Lamp) + field.lampMaps.size() * sizeof(uint32_t);
     bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface + bytes.lamps;
     for (const LightGroup& group : field.groups)
-        bytes.groups +=
-            (group.radiance.size() + group.irradiance.size() + group.prefiltered.size() + group.surfaceLight.size()) * sizeof(uint32_t);
+        for (const LightPart& part : kLightParts) bytes.groups += (group.*part.share).size() * sizeof(uint32_t);
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
 }

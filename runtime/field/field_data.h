@@ -54,6 +54,17 @@ struct FieldData
     uint32_t fileVersion = 0;         // of the format of the file it was read from; 0: it was not read from one
 };
 
+/// The words of a field that hold light, each with those of a group's share; in the order of the file.
+struct LightPart
+{
+    std::vector<uint32_t> FieldData::*words;
+    std::vector<uint32_t> LightGroup::*share;
+};
+inline constexpr LightPart kLightParts[] = {{&FieldData::radiance, &LightGroup::radiance},
+                                            {&FieldData::irradiance, &LightGroup::irradiance},
+                                            {&FieldData::prefiltered, &LightGroup::prefiltered},
+                                            {&FieldData::surfaceLight, &LightGroup::surfaceLight}};
+
 /// Bytes by part, as `sconce info` prints them; normals are 0 in the cube chart, where a texel's plane gradient is its normal.
 struct FieldBytes
 {

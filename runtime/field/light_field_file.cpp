@@ -271,12 +271,6 @@ std::string lampProblem(const FieldData& field)
     return next == words ? "" : "its lamps' maps have another size than its lamps say";
 }
 
-/// Words of a light group's shares, in the order of the file.
-constexpr std::vector<uint32_t> LightGroup::*kShares[] = {&LightGroup::radiance, &LightGroup::irradiance, &LightGroup::prefiltered,
-                                                          &LightGroup::surfaceLight};
-constexpr std::vector<uint32_t> FieldData::*kShared[] = {&FieldData::radiance, &FieldData::irradiance, &FieldData::prefiltered,
-                                                         &FieldData::surfaceLight};
-
 /// What is wrong with the light groups; empty when the shares have the field's places.
 std::string groupProblem(const FieldData& field)
 {
@@ -290,8 +284,8 @@ std::string groupProblem(const FieldData& field)
         if (!finite(group.sky) || group.lamps.size() != field.lamps.size() ||
             !std::ranges::all_of(group.lamps, [](vec3 x) { return finite(x); }))
             return fmt::format("the sky or the lamps of light group '{}' are not as the field's", name);
-        for (size_t i = 0; i < std::size(kShares); ++i)
-            if ((group.*kShares[i]).size() != (field.*kShared[i]).size())
+        for (const LightPart& part : kLightParts)
+            if ((group.*part.share).size() != (field.*part.words).size())
                 return fmt::format("the shares of light group '{}' have another size than the field's light", name);
         for (size_t texel = 0; texel < texels; ++texel)
         {
@@ -609,7 +603,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     const std::string text = metaText(field);
     std::vector<uint32_t> shares;
     for (const LightGroup& group : field.groups)
-        for (const auto part : kShares) shares.insert(shares.end(), (group.*part).begin(), (group.*part).end());
+        for (const LightPart& part : kLightParts) shares.insert(shares.end(), (group.*part.share).begin(), (group.*part.share).end());
     const uint32_t sectionsHere = field.groups.empty() ? uint32_t(groupShares) : uint32_t(sectionCount);
     const std::span<const std::byte> sections[sectionCount] = {
         std::as_bytes(std::span(text)),
@@ -726,10 +720,10 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         if (Status status = readInto(section, raw); !status) return status.error();
     auto word = shares.cbegin();
     for (LightGroup& group : field.groups)
-        for (size_t i = 0; i < std::size(kShares); ++i)
+        for (const LightPart& part : kLightParts)
         {
-            const auto end = word + std::ptrdiff_t((field.*kShared[i]).size());
-            (group.*kShares[i]).assign(word, end);
+            const auto end = word + std::ptrdiff_t((field.*part.words).size());
+            (group.*part.share).assign(word, end);
             word = end;
         }
     if (const std::string problem = contentProblem(field); !problem.empty()) return reader->damage(problem);

@@ -45,16 +45,8 @@ struct Mixer : LightFieldTwin<float>
 namespace
 {
 
-struct Kind
-{
-    uint32_t kind;
-    std::vector<uint32_t> FieldData::*words;
-    std::vector<uint32_t> LightGroup::*shares;
-};
-constexpr Kind kKinds[] = {{gpu::kMixRadiance, &FieldData::radiance, &LightGroup::radiance},
-                           {gpu::kMixIrradiance, &FieldData::irradiance, &LightGroup::irradiance},
-                           {gpu::kMixRadiance, &FieldData::prefiltered, &LightGroup::prefiltered},
-                           {gpu::kMixSurface, &FieldData::surfaceLight, &LightGroup::surfaceLight}};
+constexpr uint32_t kKinds[] = {gpu::kMixRadiance, gpu::kMixIrradiance, gpu::kMixRadiance, gpu::kMixSurface}; // of kLightParts
+static_assert(std::size(kKinds) == std::size(kLightParts));
 
 constexpr size_t kMostShareWords = size_t(1) << 30; // of all groups, that a shader's index reaches
 
@@ -90,17 +82,18 @@ Status mixGroups(FieldData& field, std::span<const vec3> weights)
     if (std::string fault = weightFault(groupsOf(field.groups), weights); !fault.empty())
         return Error{ErrorCode::badArgument, std::move(fault)};
     constexpr size_t kPiece = 4096;
-    for (const Kind& kind : kKinds)
+    for (size_t part = 0; part < std::size(kLightParts); ++part)
     {
-        std::vector<uint32_t>& words = field.*kind.words;
+        const uint32_t kind = kKinds[part];
+        std::vector<uint32_t>& words = field.*kLightParts[part].words;
         parallelFor((words.size() + kPiece - 1) / kPiece,
                     [&](size_t piece)
                     {
-                        twin::Mixer text(field, weights, kind.shares);
+                        twin::Mixer text(field, weights, kLightParts[part].share);
                         for (size_t i = piece * kPiece; i < std::min(words.size(), (piece + 1) * kPiece); ++i)
                         {
-                            if (kind.kind == gpu::kMixIrradiance && (i & 1u) != 0) continue;
-                            words[i] = kind.kind == gpu::kMixSurface ? text.mixedSurface(uint32_t(i)) : text.mixedRadiance(uint32_t(i));
+                            if (kind == gpu::kMixIrradiance && (i & 1u) != 0) continue;
+                            words[i] = kind == gpu::kMixSurface ? text.mixedSurface(uint32_t(i)) : text.mixedRadiance(uint32_t(i));
                         }
                     });
     }
@@ -120,22 +113,22 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
     for (const LightGroup& group : data.groups) made.groups.push_back({group.which, group.sky, group.lamps, {}, {}, {}, {}});
     made.weights.assign(data.groups.size(), vec3(1.0f));
     const Buffer* const targets[] = {&of.radiance, &of.irradiance, &of.prefiltered, &of.surface};
-    for (size_t i = 0; i < std::size(kKinds); ++i)
+    for (size_t i = 0; i < std::size(kLightParts); ++i)
     {
-        const size_t words = (data.*kKinds[i].words).size();
+        const size_t words = (data.*kLightParts[i].words).size();
         if (words == 0) continue;
         if (words * data.groups.size() > kMostShareWords)
             return Error{ErrorCode::outOfMemory,
                          fmt::format("{} light groups of {} words each are more than the {} that a shader reaches; bake fewer groups or "
                                      "probes",
                                      data.groups.size(), words, kMostShareWords)};
-        LightGroups::State::Part part{kKinds[i].kind, targets[i], uint32_t(words), {}};
+        LightGroups::State::Part part{kKinds[i], targets[i], uint32_t(words), {}};
         auto buffer = gpu.makeBuffer(words * data.groups.size() * 4, 0, MemoryUse::device, "light groups");
         if (!buffer) return buffer.error();
         part.shares = std::move(*buffer);
         for (size_t g = 0; g < data.groups.size(); ++g)
         {
-            const std::span<const uint32_t> share(data.groups[g].*kKinds[i].shares);
+            const std::span<const uint32_t> share(data.groups[g].*kLightParts[i].share);
             if (auto status = gpu.upload(part.shares, g * words * 4, std::as_bytes(share)); !status) return status.error();
         }
         made.bytes += part.shares.size();

@@ -82,6 +82,27 @@ TEST(LightGroups, HoldTheLightThatTheirMembersNameAndTheRest)
     EXPECT_EQ(all.size(), 2u) << "no light is left";
 }
 
+TEST(LightGroups, PatternsMatchWholeNames)
+{
+    Scene scene = litScene();
+    const auto lightsOf = [&](const char* pattern)
+    {
+        std::vector<LightGroupDesc> groups = {{"a", {pattern}}};
+        const auto found = selectLights(scene, groups);
+        return found ? (*found)[0].lights : std::vector<uint32_t>();
+    };
+    EXPECT_EQ(lightsOf("desk"), std::vector<uint32_t>());
+    EXPECT_EQ(lightsOf("*left"), std::vector<uint32_t>{1});
+    EXPECT_EQ(lightsOf("*s*k*t"), (std::vector<uint32_t>{1, 2}));
+    EXPECT_EQ(lightsOf("d*g*"), std::vector<uint32_t>{2});
+    EXPECT_EQ(lightsOf("desk left*"), std::vector<uint32_t>{1});
+    scene.lights[1].name = std::string(2000, 'a');
+    std::string stars;
+    for (int i = 0; i < 500; ++i) stars += "*a";
+    EXPECT_EQ(lightsOf((stars + "*b").c_str()), std::vector<uint32_t>()) << "at once, too";
+    EXPECT_EQ(lightsOf(stars.c_str()), std::vector<uint32_t>{1});
+}
+
 TEST(LightGroups, ThatAreNotTheScenesAreRefusedByName)
 {
     const Scene scene = litScene();
