@@ -298,6 +298,21 @@ inline constexpr Knob<float> surfaceRefined{
     .what = "Share of the surface light's texels, where light changes most within one, that are refined into 4 x 4, by rays to triangles",
     .buys = "contact shadows, their edges and light next to lamps; bake time, and 68 bytes a refined texel",
     .readme = true};
+inline constexpr uint32_t kLiveLinks[] = {0, 8, 16, 32, 64};
+inline constexpr Knob<uint32_t> liveLinks{
+    .name = "liveLinks",
+    .option = "bake --live-links",
+    .member = "BakeSettings::liveLinks",
+    .value = 0,
+    .least = 0,
+    .most = 64,
+    .only = kLiveLinks,
+    .unit = "links",
+    .what = "Of each texel of the surface light, at most as many as rays gather it, that tell where its light comes from, so that sun, "
+            "points and "
+            "spots can move afterwards; 0: they stay",
+    .buys = "lights that move (LiveLight, `relight --sun`, `render --sun-path`); a bake more, and 63 KiB a probe and link",
+    .readme = true};
 inline constexpr uint32_t kLampTexels[] = {0, 512, 1024, 2048, 4096, 8192};
 inline constexpr Knob<uint32_t> lampTexels{
     .name = "lampTexels",

@@ -7,6 +7,7 @@
 #include "runtime/field/light_field.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/light_groups.h"
+#include "runtime/field/live_light.h"
 #include "runtime/frame/indirect_light.h"
 
 namespace sconce
@@ -46,19 +47,38 @@ Result<LightField> LightField::load(const Device& device, const std::filesystem:
     return makeLightField(device.gpu(), *data, quality);
 }
 
+namespace
+{
+
+/// What tells that a file isn't that of a field, as a sentence without its full stop; empty where nothing does.
+std::string otherField(const LightField& field, const FieldData& data, const std::filesystem::path& file)
+{
+    const gpu::LightFieldInfo &here = field.info(), &there = data.info;
+    if (here.probeCount == there.probeCount && here.faceSize == there.faceSize && here.surfaceSize == there.surfaceSize &&
+        here.refinedTexels == there.refinedTexels && here.hidden == there.hidden && field.state().groupCount == data.groups.size())
+        return {};
+    return fmt::format("'{}' has {} probes of {} texels in {} light groups and is not the file of this light field, which has {} of {} in "
+                       "{}; give that which it was loaded from",
+                       file.string(), there.probeCount, there.faceSize, data.groups.size(), here.probeCount, here.faceSize,
+                       field.state().groupCount);
+}
+
+} // namespace
+
 Result<LightGroups> LightGroups::load(const Device& device, const LightField& field, const std::filesystem::path& file)
 {
     const auto data = loadField(file);
     if (!data) return data.error();
-    const gpu::LightFieldInfo &here = field.info(), &there = data->info;
-    if (here.probeCount != there.probeCount || here.faceSize != there.faceSize || here.surfaceSize != there.surfaceSize ||
-        here.refinedTexels != there.refinedTexels || here.hidden != there.hidden || field.state().groupCount != data->groups.size())
-        return Error{ErrorCode::badArgument,
-                     fmt::format("'{}' has {} probes of {} texels in {} light groups and is not the file of this light field, which has {} "
-                                 "of {} in {}; give that which it was loaded from",
-                                 file.string(), there.probeCount, there.faceSize, data->groups.size(), here.probeCount, here.faceSize,
-                                 field.state().groupCount)};
+    if (std::string fault = otherField(field, *data, file); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
     return makeLightGroups(device.gpu(), field, *data);
+}
+
+Result<LiveLight> LiveLight::load(const Device& device, const LightField& field, const std::filesystem::path& file)
+{
+    const auto data = loadField(file);
+    if (!data) return data.error();
+    if (std::string fault = otherField(field, *data, file); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
+    return makeLiveLight(device.gpu(), field, *data);
 }
 
 Result<IndirectLight> IndirectLight::create(const Device& device, const LightField& field, const Desc& desc)
@@ -83,10 +103,12 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.bounces = desc.bounces;
     settings.converged = desc.converged;
     settings.rays = desc.rays;
+    settings.liveLinks = desc.liveLinks;
     settings.take(*plan);
     BakeReport report;
-    const auto field = desc.groups.empty() ? bakeLightField(device.gpu().host, capped, probes, settings, progress, report)
-                                           : bakeLightGroups(device.gpu().host, capped, probes, settings, desc.groups, progress, report);
+    const auto field = desc.groups.empty() && desc.liveLinks == 0
+                           ? bakeLightField(device.gpu().host, capped, probes, settings, progress, report)
+                           : bakeLightGroups(device.gpu().host, capped, probes, settings, desc.groups, progress, report);
     if (!field) return field.error();
     return saveField(*field, file);
 }

@@ -128,6 +128,61 @@ private:
     std::unique_ptr<State> owned;
 };
 
+inline constexpr size_t kMostLiveLights = 1024;
+
+/// The light that a field with live links is in.
+struct LightState
+{
+    std::vector<Light> lights; // of no extent: sun, points, spots; world, metres; at most kMostLiveLights, added, moved and removed at will
+    std::vector<vec3> groups;  // weights of LiveLight::groups(), as LightGroups::set() takes them; empty: as they were baked
+};
+
+/// How much of a field's light a record may make anew.
+struct RelightBudget
+{
+    uint32_t probes = 0;  // that are lit in one record; 0: all that need it
+    uint32_t bounces = 2; // that their light makes in it; 1 to 16
+    vec3 eye{0.0f};       // world, metres: where fewer are lit, half of them are those nearest to it, the others take turns
+};
+
+/// The lights of a field that was baked with live links (BakeDesc::liveLinks), as a host moves, adds and removes them: direct light by rays
+/// through the light field, then bounces, all by links that the bake has kept, so that still light is still. Diffuse light, irradiance,
+/// prefiltered radiance and what rays find follow. What the bake has of groups is switched, dimmed and coloured, too. A host without it has
+/// none of its passes or bytes. Move-only; it keeps its light field.
+class LiveLight
+{
+public:
+    /// Uploads what light needs to move. Before IndirectLight and whatever else traces the field is made, since that then looks for live
+    /// light. Light begins as black where it is live, and is settled once settled() says so.
+    /// @param file  that `field` was loaded from
+    /// Errors: as LightField::load(), and badArgument where the file has no live links, or is of another field.
+    static Result<LiveLight> load(const Device& device, const LightField& field, const std::filesystem::path& file);
+    LiveLight(LiveLight&&) noexcept;
+    LiveLight& operator=(LiveLight&&) noexcept;
+    ~LiveLight();
+
+    std::span<const Light> lights() const;   // as set last, or as baked
+    std::vector<std::string> groups() const; // names of those of the field
+    /// Errors: badArgument (the light or the group by name, and what is wrong with it); what was set before stays.
+    Status set(const LightState& state);
+    /// Whether a record has nothing to do.
+    bool settled() const;
+    /// Records what is to be done, before the frames that show it; nothing once light is settled. Begins by waiting for whoever reads the
+    /// field, ends with the barrier that lets any later stage read it. Never allocates, throws or submits. The host's own direct light is
+    /// the host's to change; IndirectLight's `temporal` needs FrameView::follows = kFollowsChange as long as light is not settled. Cost a
+    /// probe with the default of surface texels: 16,224 shadow rays a light where lights have moved, and as many reads a link and bounce.
+    /// @param timer  optional; scopes "live light" and "light groups"
+    void record(VkCommandBuffer cmd, const RelightBudget& budget = {}, GpuTimer* timer = nullptr) noexcept;
+    uint64_t deviceBytes() const;
+
+    struct State; // of the library's own folders
+    explicit LiveLight(std::unique_ptr<State> made);
+    State& state() const { return *owned; }
+
+private:
+    std::unique_ptr<State> owned;
+};
+
 /// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
 /// Move-only; it keeps its light field.
 class IndirectLight
@@ -215,7 +270,8 @@ struct BakeDesc
     uint32_t bounces = knobs::bounces.value;       // times the baked light is re-injected at most, 0..64; each costs one gather a texel
     float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
     std::string effects = "auto";             // as planEffects()
-    const ExactRays* rays = nullptr;    // to the scene's triangles, that gather surface light; null: through the light field, on the device
+    const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
+    uint32_t liveLinks = knobs::liveLinks.value; // of each surface texel, so that LiveLight moves lights; 0: they stay
     std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked
 };
 

@@ -31,6 +31,7 @@ layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
 bool readsFarBounds() { return (kFieldFlags & kReadsFarBounds) != 0u; }
 bool byTexels() { return (kFieldFlags & kByTexels) != 0u; }
 bool holdsRefined() { return (kFieldFlags & kHoldsRefined) != 0u; }
+bool holdsLive() { return (kFieldFlags & kHoldsLive) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
@@ -67,6 +68,9 @@ uint surfaceWord(uint index)
     if (byTexels()) return texelFetch(sconceSurfaceLight, int(index)).x;
     return SconceWords(surfaceAddress).word[index];
 }
+uint liveWord(uint index) { return SconceWords(liveAddress).word[index]; }
+uint albedoWord(uint index) { return SconceWords(albedoAddress).word[index]; }
+vec3 fixedWeight() { return radianceWeight; }
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 
 #include "shared/pure_text.h"
@@ -80,6 +84,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/refined.h"
 #include "shared/hidden_light.h"
 #include "shared/surface_light.h"
+#include "shared/live_text.h"
 #include "shared/ray_query.h"
 /// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.
 RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return queryRay(origin, direction, normal); }

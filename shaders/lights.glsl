@@ -3,6 +3,7 @@
 #define SCONCE_LIGHTS_GLSL
 #include "scene.glsl"
 #include "shared/brdf.h"
+#include "shared/delta_light.h"
 #include "shared/chart.h"
 
 struct LightSample
@@ -18,19 +19,17 @@ LightSample unshadowedLight(uint kind, uint i, vec3 p)
 {
     GpuLight light = lights[i];
     LightSample s;
-    s.toLight = -light.direction;
-    s.irradiance = light.intensity;
-    if (kind == kLightDirectional || kind == kLightSky) return s;
-    vec3 away = light.position - p;
-    float d2 = max(dot(away, away), 1e-14);
-    s.toLight = away * inversesqrt(d2);
     if (kind == kLightEmitter)
     {
-        s.irradiance *= patchAttenuation(-dot(s.toLight, light.direction), d2, light.area, light.area, light.innerCone > 0.0);
+        vec3 away = light.position - p;
+        float d2 = max(dot(away, away), 1e-14);
+        s.toLight = away * inversesqrt(d2);
+        s.irradiance = light.intensity * patchAttenuation(-dot(s.toLight, light.direction), d2, light.area, light.area, light.innerCone > 0.0);
         return s;
     }
-    s.irradiance *= distanceAttenuation(sqrt(d2), light.range);
-    if (kind == kLightSpot) s.irradiance *= spotAttenuation(dot(-s.toLight, light.direction), light.innerCone, light.outerCone);
+    DeltaLight delta = deltaLightAt(light, kind == kLightSky ? kLightDirectional : kind, p, 0.0);
+    s.toLight = delta.toLight;
+    s.irradiance = delta.irradiance;
     return s;
 }
 

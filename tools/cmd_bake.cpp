@@ -83,9 +83,11 @@ int runBake(const BakeOptions& options, const Context& context)
         if (!found) return fail(found.error());
         settings.light = &light.emplace(std::move(*found));
     }
-    Result<FieldData> field = groups->empty() || !options.dims.empty()
-                                  ? bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report)
-                                  : bakeLightGroups(device->host(), *scene, positions, settings, *groups, consoleProgress(context), report);
+    const bool apart = (!groups->empty() && options.dims.empty()) || settings.liveLinks > 0;
+    Result<FieldData> field =
+        !apart ? bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report)
+               : bakeLightGroups(device->host(), *scene, positions, settings,
+                                 options.dims.empty() ? *groups : std::vector<LightGroupDesc>(), consoleProgress(context), report);
     if (!field) return fail(field.error());
     if (report.moved > 0 && !context.quiet)
         std::cerr << "note: " << report.moved << " of " << positions.size()
@@ -137,6 +139,7 @@ void addBakeCommand(CLI::App& app, Context& context)
     addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
     addKnob(bake, "--surface-refined", settings.surfaceRefined, knobs::surfaceRefined, "SHARE");
     addKnob(bake, "--lamp-texels", settings.lampTexels, knobs::lampTexels, "TEXELS");
+    addKnob(bake, "--live-links", settings.liveLinks, knobs::liveLinks);
     addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
     addKnob(bake, "--gather", options->gather, knobs::gather);
     addChoice(bake, "--chart", settings.chart, knobs::chart);

@@ -1,8 +1,13 @@
 // sconce relight: a light field in other light.
+#include <fmt/format.h>
+
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/light_groups.h"
+#include "runtime/field/live_light.h"
+#include "runtime/vulkan/host_vulkan.h"
 #include "tools/field_report.h"
 #include "tools/light_group_options.h"
+#include "tools/live_light_options.h"
 
 namespace sconce::tools
 {
@@ -12,9 +17,29 @@ namespace
 
 struct RelightOptions
 {
-    std::string field, output;
+    std::string field, output, device;
     std::vector<std::string> dims;
+    LiveLightOptions live;
 };
+
+/// A field in other light, groups and all.
+Status relit(FieldData& field, const RelightOptions& options, std::span<const vec3> weights)
+{
+    if (field.live.links == 0)
+    {
+        if (options.live.any())
+            return Error{ErrorCode::badArgument,
+                         fmt::format("The lights of light field '{}' can't move; bake it with --live-links.", options.field)};
+        return mixGroups(field, weights);
+    }
+    std::vector<Light> lights = field.live.lights;
+    if (Status status = options.live.apply(lights); !status) return status;
+    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
+    if (!device) return device.error();
+    const auto gpu = Gpu::create(device->host());
+    if (!gpu) return gpu.error();
+    return relightField(**gpu, field, lights, weights);
+}
 
 int runRelight(const RelightOptions& options, const Context& context)
 {
@@ -23,8 +48,11 @@ int runRelight(const RelightOptions& options, const Context& context)
     if (!field) return fail(field.error());
     const Result<std::vector<vec3>> weights = weightsOf(options.dims, groupsOf(field->groups));
     if (!weights) return fail(weights.error());
-    if (Status mixed = mixGroups(*field, *weights); !mixed) return fail(mixed.error());
+    if (options.dims.empty() && !options.live.any())
+        return fail(ErrorCode::badArgument, "There is nothing to change; give --dim, --sun or --lights.");
+    if (Status status = relit(*field, options, *weights); !status) return fail(status.error());
     field->groups.clear();
+    field->live = {};
     field->fileVersion = 0; // it isn't that file
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     if (!context.json)
@@ -43,12 +71,16 @@ int runRelight(const RelightOptions& options, const Context& context)
 
 void addRelightCommand(CLI::App& app, Context& context)
 {
-    CLI::App* relight = addCommand(app, context, "relight", "A light field in other light of its light groups, without rays");
+    CLI::App* relight =
+        addCommand(app, context, "relight", "A light field in other light: of its light groups, and of lights that may move");
     auto options = std::make_shared<RelightOptions>();
-    relight->add_option("FIELD", options->field, ".sconce file of `sconce bake --group`")->required()->type_name("");
-    relight->add_option("-o,--output", options->output, ".sconce file to write, without groups (required)")->required()->type_name("FILE");
+    relight->add_option("FIELD", options->field, ".sconce file of `sconce bake --group` or `--live-links`")->required()->type_name("");
+    relight->add_option("-o,--output", options->output, ".sconce file to write, whose light then stays (required)")
+        ->required()
+        ->type_name("FILE");
     addDims(relight, options->dims);
-    relight->get_option("--dim")->required();
+    options->live.add(relight);
+    addDevice(relight, options->device);
     onChosen(relight, context, options, runRelight);
 }
 

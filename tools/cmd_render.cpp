@@ -1,6 +1,7 @@
 // sconce render: one frame as a host would draw it, with its passes timed.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <map>
 
@@ -9,12 +10,14 @@
 #include "bench/opponents/baselines.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/light_groups.h"
+#include "runtime/field/live_light.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
 #include "tools/light_group_options.h"
+#include "tools/live_light_options.h"
 #include "tools/pictures.h"
 #include "tools/quality_option.h"
 
@@ -40,6 +43,7 @@ struct RenderOptions
     std::string field, effects = "auto", tracer = "ours", device;
     QualityOption quality;
     std::vector<std::string> groups, dims;
+    std::string sunPath;
     uint32_t width = knobs::width.value, height = knobs::height.value, samples = knobs::glossyRays.value, frames = knobs::drawnFrames.value,
              seed = knobs::frameSeed.value;
     std::optional<float> roughness;
@@ -67,6 +71,119 @@ Result<double> dimField(Gpu& gpu, const LightField& field, const FieldData& data
     double milliseconds = 0.0;
     for (const GpuTimer::Scope& scope : timer->read()) milliseconds += scope.milliseconds;
     return milliseconds;
+}
+
+/// Lights a field with live links anew, to the end. @return  milliseconds by the device's clock
+Result<double> settle(Gpu& gpu, LiveLight& live, const LightState& state)
+{
+    if (Status status = live.set(state); !status) return status.error();
+    auto timer = GpuTimer::create(gpu, 2);
+    if (!timer) return timer.error();
+    double milliseconds = 0.0;
+    while (!live.settled())
+    {
+        const Status recorded = gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                timer->reset(cmd);
+                live.record(cmd, {}, &*timer);
+            });
+        if (!recorded) return recorded.error();
+        for (const GpuTimer::Scope& scope : timer->read()) milliseconds += scope.milliseconds;
+    }
+    return milliseconds;
+}
+
+/// The light that pictures are drawn in.
+struct Lighting
+{
+    std::vector<vec3> weights;  // of the field's groups; empty: as they were baked
+    std::vector<Light> lights;  // that move
+    std::vector<SunPlace> path; // of the sun, a picture each; empty: it stays
+    bool moves = false;         // live light is to be made
+};
+
+/// Takes what moves out of the scene, changes the rest of its light as the options say, and puts what moves there again.
+Result<Lighting> chooseLight(const RenderOptions& options, const FieldData& data, std::span<const LightGroupDesc> groups, Scene& scene)
+{
+    Lighting made;
+    const bool live = data.live.links > 0;
+    if (!live && !options.sunPath.empty())
+        return Error{
+            ErrorCode::badArgument,
+            fmt::format("The lights of light field '{}' can't move; bake it with --live-links, or leave --sun-path out.", options.field)};
+    const std::vector<LightGroupDesc> own = data.groups.empty() ? std::vector(groups.begin(), groups.end()) : groupsOf(data.groups);
+    if (live)
+    {
+        auto taken = takeLiveLights(scene, own);
+        if (!taken) return taken.error();
+        made.lights = std::move(*taken);
+        made.moves = !options.dims.empty() || !options.sunPath.empty() || !std::ranges::equal(made.lights, data.live.lights, sameLight);
+    }
+    if (!options.dims.empty())
+    {
+        auto dimmed = dimScene(scene, own, options.dims);
+        if (!dimmed) return dimmed.error();
+        if (!data.groups.empty()) made.weights = std::move(*dimmed);
+    }
+    scene.lights.insert(scene.lights.end(), made.lights.begin(), made.lights.end());
+    if (options.sunPath.empty()) return made;
+    auto path = sunPath(options.sunPath, options.frames);
+    if (!path) return path.error();
+    made.path = std::move(*path);
+    return made;
+}
+
+/// Frames of one picture.
+struct Drawn
+{
+    RenderedFrame frame; // the last
+    std::vector<double> frameMs;
+    std::map<std::string, std::vector<double>> passMs;
+    std::vector<std::string> passes; // in the order of the frame
+    uint64_t deviceBytes = 0;
+};
+
+Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, const RenderSettings& settings, const Camera& camera,
+                         uint32_t frames, const Context& context)
+{
+    const Error interrupted{ErrorCode::cancelled, "Interrupted; nothing was written."};
+    // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
+    const auto deviceScene =
+        DeviceScene::create(gpu, scene, field.info(), sceneForFrames(settings.effects, field.info()), consoleProgress(context));
+    if (!deviceScene) return deviceScene.error();
+    const auto renderer = SceneRenderer::create(gpu, *deviceScene, field, settings);
+    if (!renderer) return renderer.error();
+    const Progress progress = consoleProgress(context);
+    Drawn drawn;
+    for (uint32_t i = 0; i < frames; ++i)
+    {
+        if (!progress("render", double(i) / frames)) return interrupted;
+        // With --temporal each frame draws rays of its own for the history to average; without, all are the same picture, timed again.
+        auto frame = (*renderer)->render(camera, settings.effects.temporal ? i : 0);
+        if (!frame) return frame.error();
+        drawn.frame = std::move(*frame);
+        // The sum of the passes, not the wall clock: what the host does between them is not the frame's.
+        double sum = 0.0;
+        for (const GpuTimer::Scope& scope : drawn.frame.times)
+        {
+            sum += scope.milliseconds;
+            if (!drawn.passMs.contains(scope.name)) drawn.passes.emplace_back(scope.name);
+            drawn.passMs[scope.name].push_back(scope.milliseconds);
+        }
+        if (!drawn.frame.times.empty()) drawn.frameMs.push_back(sum);
+    }
+    progress("render", 1.0);
+    drawn.deviceBytes = (*renderer)->deviceBytes();
+    return drawn;
+}
+
+/// The name of one of several pictures: a number before its extension.
+std::string numbered(const std::string& file, uint32_t number)
+{
+    if (file.empty()) return file;
+    const std::filesystem::path path(file);
+    return (path.parent_path() / fmt::format("{}-{:04}{}", path.stem().string(), number, path.extension().string())).string();
 }
 
 /// What --quality says and the command line doesn't.
@@ -183,6 +300,36 @@ double median(std::vector<double> values)
     return values.empty() ? 0.0 : 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
+/// A picture for each place of the sun, with light that has settled.
+int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightField& field, LiveLight& live, const Lighting& lighting,
+            const RenderSettings& settings, const Camera& camera, const Context& context)
+{
+    const Stopwatch watch;
+    Json json;
+    const size_t fixed = scene.lights.size() - lighting.lights.size();
+    for (uint32_t i = 0; i < lighting.path.size(); ++i)
+    {
+        std::vector<Light> lights = lighting.lights;
+        turnSun(lights, lighting.path[i]);
+        const Result<double> milliseconds = settle(gpu, live, {lights, lighting.weights});
+        if (!milliseconds) return fail(milliseconds.error());
+        scene.lights.resize(fixed);
+        scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
+        const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, context);
+        if (!drawn) return fail(drawn.error());
+        PictureOptions pictures = options.pictures;
+        pictures.output = numbered(options.pictures.output, i);
+        pictures.png = numbered(options.pictures.png, i);
+        Json one = {{"sun", toJson(lighting.path[i].direction)}, {"live_light_ms", *milliseconds}};
+        if (Status status = pictures.write(imagesOf(drawn->frame), one); !status) return fail(status.error());
+        if (!context.json) std::cout << pictures.output << "\n";
+        json["pictures"].push_back(one);
+    }
+    addCost(json, watch);
+    if (context.json) print(json);
+    return exitOk;
+}
+
 int runRender(RenderOptions options, const Context& context)
 {
     const Stopwatch watch;
@@ -210,13 +357,8 @@ int runRender(RenderOptions options, const Context& context)
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
-    std::vector<vec3> weights; // of the field's groups
-    if (!options.dims.empty())
-    {
-        auto dimmed = dimScene(*scene, data->groups.empty() ? *groups : groupsOf(data->groups), options.dims);
-        if (!dimmed) return fail(dimmed.error());
-        if (!data->groups.empty()) weights = std::move(*dimmed);
-    }
+    auto lighting = chooseLight(options, *data, *groups, *scene);
+    if (!lighting) return fail(lighting.error());
     capScene(*scene, *plan); // after the groups have found their lights
 
     // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
@@ -248,16 +390,22 @@ int runRender(RenderOptions options, const Context& context)
     settings.effects.tracedDiffuse = diffuse == kTraced;
     settings.effects.patches = diffuse == kPatches;
     settings.effects.fieldShadows = options.areaShadows == kField;
-    // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
-    Result<DeviceScene> deviceScene =
-        DeviceScene::create(**gpu, *scene, data->info, sceneForFrames(settings.effects, data->info), consoleProgress(context));
-    if (!deviceScene) return fail(deviceScene.error());
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
-    std::optional<double> groupsMs;
-    if (!weights.empty())
+    std::optional<double> groupsMs, liveMs;
+    std::optional<LiveLight> live;
+    if (lighting->moves)
     {
-        const Result<double> dimmed = dimField(**gpu, *field, *data, weights);
+        auto made = makeLiveLight(**gpu, *field, *data);
+        if (!made) return fail(made.error());
+        live = std::move(*made);
+        const Result<double> settled = settle(**gpu, *live, {lighting->lights, lighting->weights});
+        if (!settled) return fail(settled.error());
+        liveMs = *settled;
+    }
+    else if (!lighting->weights.empty())
+    {
+        const Result<double> dimmed = dimField(**gpu, *field, *data, lighting->weights);
         if (!dimmed) return fail(dimmed.error());
         groupsMs = *dimmed;
     }
@@ -273,31 +421,9 @@ int runRender(RenderOptions options, const Context& context)
         settings.lightShaders = lightPasses(*baseline);
         settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
     }
-    Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(**gpu, *deviceScene, *field, settings);
-    if (!renderer) return fail(renderer.error());
-
-    const Progress progress = consoleProgress(context);
-    std::vector<double> frameMs;
-    std::map<std::string, std::vector<double>> passMs;
-    std::vector<std::string> passes; // in the order of the frame
-    Result<RenderedFrame> frame = Error{ErrorCode::cancelled, "Interrupted; nothing was written."};
-    for (uint32_t i = 0; i < options.frames; ++i)
-    {
-        if (!progress("render", double(i) / options.frames)) return fail(ErrorCode::cancelled, "Interrupted; nothing was written.");
-        // With --temporal each frame draws rays of its own for the history to average; without, all are the same picture, timed again.
-        frame = (*renderer)->render(*camera, options.temporal ? i : 0);
-        if (!frame) return fail(frame.error());
-        // The sum of the passes, not the wall clock: what the host does between them is not the frame's.
-        double sum = 0.0;
-        for (const GpuTimer::Scope& scope : frame->times)
-        {
-            sum += scope.milliseconds;
-            if (!passMs.contains(scope.name)) passes.emplace_back(scope.name);
-            passMs[scope.name].push_back(scope.milliseconds);
-        }
-        if (!frame->times.empty()) frameMs.push_back(sum);
-    }
-    progress("render", 1.0);
+    if (!lighting->path.empty()) return drawDay(options, **gpu, *scene, *field, *live, *lighting, settings, *camera, context);
+    const Result<Drawn> drawn = drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, context);
+    if (!drawn) return fail(drawn.error());
 
     // All that the picture depends on, so that it can be drawn again from what stands beside it.
     Json json;
@@ -309,7 +435,7 @@ int runRender(RenderOptions options, const Context& context)
     json["given_up"] = Json::object();
     for (const PlannedEffect& effect : plan->effects)
         if (!effect.givenUp.empty()) json["given_up"][effect.name] = effect.givenUp;
-    json["device_bytes"] = (*renderer)->deviceBytes();
+    json["device_bytes"] = drawn->deviceBytes;
     json["samples"] = settings.glossyRays;
     json["trace_every"] = settings.traceEvery;
     json["rays_below"] = settings.raysBelow;
@@ -319,13 +445,14 @@ int runRender(RenderOptions options, const Context& context)
     json["frames"] = options.frames;
     json["dim"] = options.dims;
     if (groupsMs) json["light_groups_ms"] = *groupsMs;
-    json["frame_ms"] = frameMs.empty() ? Json(nullptr) : Json(median(frameMs));
+    if (liveMs) json["live_light_ms"] = *liveMs;
+    json["frame_ms"] = drawn->frameMs.empty() ? Json(nullptr) : Json(median(drawn->frameMs));
     json["passes_ms"] = Json::object();
-    for (const std::string& pass : passes) json["passes_ms"][pass] = median(passMs[pass]);
+    for (const std::string& pass : drawn->passes) json["passes_ms"][pass] = median(drawn->passMs.at(pass));
     // Only the rays of reflections are counted; frames without them have no means to give.
-    if (settings.effects.glossy || settings.effects.mirror) addCounts(json, *frame, settings.glossyRays);
-    addDiffuseFrom(json, *frame);
-    if (Status status = options.pictures.write(imagesOf(*frame), json); !status) return fail(status.error());
+    if (settings.effects.glossy || settings.effects.mirror) addCounts(json, drawn->frame, settings.glossyRays);
+    addDiffuseFrom(json, drawn->frame);
+    if (Status status = options.pictures.write(imagesOf(drawn->frame), json); !status) return fail(status.error());
     // After the pictures are written, so that the cost has that in it.
     addCost(json, watch);
     if (context.json)
@@ -333,8 +460,8 @@ int runRender(RenderOptions options, const Context& context)
     else
     {
         std::cout << options.pictures.output << ": " << options.width << "x" << options.height << " on " << device->name() << ", frame "
-                  << (frameMs.empty() ? std::string("not timed") : fmt::format("{:f} ms", median(frameMs))) << "\n";
-        for (const std::string& pass : passes) std::cout << "  " << pass << ": " << median(passMs[pass]) << " ms\n";
+                  << (drawn->frameMs.empty() ? std::string("not timed") : fmt::format("{:f} ms", median(drawn->frameMs))) << "\n";
+        for (const std::string& pass : drawn->passes) std::cout << "  " << pass << ": " << median(drawn->passMs.at(pass)) << " ms\n";
         std::cout << std::flush;
     }
     return exitOk;
@@ -372,6 +499,12 @@ void addRenderCommand(CLI::App& app, Context& context)
     addKnob(command, "--seed", options->seed, knobs::frameSeed);
     addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
     addDims(command, options->dims, "; of a field's groups its light, too");
+    command
+        ->add_option("--sun-path", options->sunPath,
+                     described("Draws --frames pictures of a day, numbered, each lit to the end by a sun on its way: lines of "
+                               "time,x,y,z or time,x,y,z,r,g,b after a header of these names; see --sun",
+                               words("none")))
+        ->type_name("FILE");
     addDevice(command, options->device);
     options->pictures.add(command, kFrameLayers);
     options->quality.add(command);

@@ -282,25 +282,7 @@ void SceneOptions::add(CLI::App* command)
 
 void SceneOptions::addLight(CLI::App* command)
 {
-    command
-        ->add_option_function<std::string>(
-            "--sun",
-            [this](const std::string& text)
-            {
-                const Result<std::vector<float>> n = parseNumbers(text, {3, 6});
-                if (!n) throw CLI::ValidationError("--sun", n.error().message);
-                const vec3 direction((*n)[0], (*n)[1], (*n)[2]);
-                if (!(glm::length(direction) > 0.0f)) throw CLI::ValidationError("--sun", fmt::format("'{}' has no direction", text));
-                sunDirection = glm::normalize(direction);
-                if (n->size() == 6) sunIrradiance = vec3((*n)[3], (*n)[4], (*n)[5]);
-                if (sunIrradiance && glm::any(glm::lessThan(*sunIrradiance, vec3(0.0f))))
-                    throw CLI::ValidationError("--sun", fmt::format("'{}' has negative light", text));
-            },
-            described("Replaces the scene's directional lights by one: the way its light travels, any length, and its irradiance in W/m^2",
-                      fmt::format("{}; irradiance {},{},{}", defaultText(knobs::light), knobText(kDefaultSunIrradiance[0]),
-                                  knobText(kDefaultSunIrradiance[1]), knobText(kDefaultSunIrradiance[2])),
-                      rangeText(knobs::light)))
-        ->type_name("X,Y,Z[,R,G,B]");
+    lights.add(command);
     command
         ->add_option_function<std::string>(
             "--sky",
@@ -331,17 +313,9 @@ Result<Scene> SceneOptions::load(const Context& context) const
     endProgress();
     if (!scene) return scene;
     for (const std::string& warning : scene->warnings) note(context, fmt::format("Note: {}", warning));
-    if (sunDirection)
-    {
-        std::erase_if(scene->lights, [](const Light& light) { return light.type == LightType::directional; });
-        Light sun;
-        sun.name = "sun";
-        sun.direction = *sunDirection;
-        sun.intensity = sunIrradiance.value_or(vec3(kDefaultSunIrradiance[0], kDefaultSunIrradiance[1], kDefaultSunIrradiance[2]));
-        scene->lights.insert(scene->lights.begin(), sun);
-    }
+    if (Status lit = lights.apply(scene->lights); !lit) return lit.error();
     if (sky) scene->sky = *sky;
-    if (!sunDirection && !sky && addDefaultLight(*scene))
+    if (!lights.any() && !sky && addDefaultLight(*scene))
         note(context, "Note: the scene has no light; a default sun and sky are used (--sun, --sky).");
     return scene;
 }

@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "scene/scene.h"
 #include "tools/knob_options.h"
+#include "tools/live_light_options.h"
 
 namespace sconce::tools
 {
@@ -87,10 +88,11 @@ void addSize(CLI::App* command, uint32_t& width, uint32_t& height);
 struct SceneOptions
 {
     std::string name;
-    std::optional<vec3> sunDirection, sunIrradiance, sky;
+    LiveLightOptions lights;
+    std::optional<vec3> sky;
 
     void add(CLI::App* command);
-    void addLight(CLI::App* command); // --sun and --sky alone
+    void addLight(CLI::App* command); // --sun, --lights and --sky alone
     /// The scene with its light overridden; a scene without any light gets the default sun and sky. Notes its warnings.
     Result<Scene> load(const Context& context) const;
 };

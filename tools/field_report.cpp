@@ -34,7 +34,8 @@ Json bytesJson(const FieldBytes& bytes)
             {"surface_light", bytes.surface},
             {"surface_light_cells", bytes.cells},
             {"lamps", bytes.lamps},
-            {"light_groups", bytes.groups}};
+            {"light_groups", bytes.groups},
+            {"live", bytes.live}};
 }
 
 std::string megabytes(size_t bytes)
@@ -64,6 +65,9 @@ Json fieldJson(const FieldData& field)
     json["light_groups"] = Json::array();
     for (const LightGroup& group : field.groups)
         json["light_groups"].push_back({{"name", group.which.name}, {"members", group.which.members}});
+    json["live_links"] = field.live.links;
+    json["live_lights"] = Json::array();
+    for (const Light& light : field.live.lights) json["live_lights"].push_back(light.name);
     json["octree"] = {{"leaves", field.octree.leaves},
                       {"nodes", field.octree.nodes},
                       {"depth", field.octree.topShift},
@@ -107,6 +111,9 @@ void printField(const FieldData& field, const std::string& file)
                       << (group.which.members.empty() ? "" : fmt::format("={}", fmt::join(group.which.members, ",")));
         std::cout << "\n";
     }
+    if (field.live.links > 0)
+        std::cout << fmt::format("live: {} links a texel, {}, {:.2f} MB a probe; {} lights\n", field.live.links, megabytes(bytes.live),
+                                 double(bytes.live) / 1e6 / double(info.probeCount), field.live.lights.size());
     std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : fileVersionOf(field)) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;

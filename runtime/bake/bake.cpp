@@ -58,7 +58,8 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
     const std::string fault =
         firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
                     faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays),
-                    faultOf(knobs::surfaceRefined, settings.surfaceRefined), faultOf(knobs::lampTexels, settings.lampTexels)});
+                    faultOf(knobs::surfaceRefined, settings.surfaceRefined), faultOf(knobs::lampTexels, settings.lampTexels),
+                    faultOf(knobs::liveLinks, settings.liveLinks)});
     if (!fault.empty()) return fault;
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
@@ -214,6 +215,7 @@ struct Bake
     Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage);
     Status bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
     Status surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
+    std::vector<uint32_t> coarserAlbedo() const;
     Status lentLight(Gpu& gpu, ProbeBaker& baker, const FieldData& light, BakeReport& spent);
 };
 
@@ -305,11 +307,12 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     auto dark = asItIs(gpu);
     if (!dark) return dark.error();
     const uint32_t shadowRays = std::min(settings.surfaceRays, gpu::kMostShadowRays);
+    const bool live = settings.rays && settings.layout && settings.layout->liveLinks > 0 && settings.layout->live.links == 0;
     std::optional<TriangleGather> exact;
     if (settings.rays) exact.emplace(*settings.rays, field, texels, scene.lights(), TriangleGather::Desc{settings.surfaceRays, shadowRays});
     auto surfaces = SurfaceBaker::create(
         gpu, scene, *dark, texels,
-        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr});
+        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live});
     if (!surfaces) return surfaces.error();
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
@@ -346,7 +349,38 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     if (auto status = surfaces->bounce(); !status) return status;
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     if (auto status = cancelledIfAsked("refined texels", 0, 1); !status) return status;
-    return surfaces->refine(field, settings.surfaceRefined, settings.layout);
+    if (auto status = surfaces->refine(field, settings.surfaceRefined, settings.layout); !status || !live) return status;
+    settings.layout->live = surfaces->transport(field, settings.layout->liveLinks, *settings.layout->hidden);
+    settings.layout->live.albedo = coarserAlbedo();
+    return success();
+}
+
+/// LiveTransport::albedo: the mean of four texels, sky left out.
+std::vector<uint32_t> Bake::coarserAlbedo() const
+{
+    const size_t side = field.info.faceSize / 2, fine = field.info.faceSize, rows = 6 * side * field.probes.size();
+    std::vector<uint32_t> words((rows * side + 1) / 2);
+    parallelFor(rows / 2, // so that no two write to one word
+                [&](size_t pair)
+                {
+                    for (size_t texel = 2 * pair * side; texel < 2 * (pair + 1) * side; ++texel)
+                    {
+                        const size_t x = texel % side, row = texel / side;
+                        vec3 sum(0.0f);
+                        float count = 0.0f;
+                        for (const size_t at : {2 * row * fine + 2 * x, 2 * row * fine + 2 * x + 1, (2 * row + 1) * fine + 2 * x,
+                                                (2 * row + 1) * fine + 2 * x + 1})
+                        {
+                            const uint32_t bits = surfaces[at];
+                            if (bits == 0) continue;
+                            sum += vec3(bits & 31u, bits >> 5 & 63u, bits >> 11 & 31u);
+                            count += 1.0f;
+                        }
+                        const glm::uvec3 mean(sum / std::max(count, 1.0f) + 0.5f);
+                        words[texel / 2] |= (mean.x | mean.y << 5 | mean.z << 11) << (16 * (texel & 1));
+                    }
+                });
+    return words;
 }
 
 /// The probes' radiance of what their surfaces reflect of light that another field holds.

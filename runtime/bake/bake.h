@@ -29,6 +29,7 @@ struct BakeSettings
     float surfaceRefined = knobs::surfaceRefined.value;  // share of them that is refined at most, where `rays` gather
     uint32_t lampTexels = knobs::lampTexels.value;       // a side of a lamp's shadow map; 0, or without `rays`: emitters are no lamps
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
+    uint32_t liveLinks = knobs::liveLinks.value;         // of each texel, so that lights may move; bakeLightGroups() makes them; 0: none
     const ExactRays* rays = nullptr;  // to the triangles of the scene that is baked, that gather it; null: through the field
     DeviceSceneDesc scene;            // textures and lights
     std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports

@@ -1,12 +1,14 @@
 #include "runtime/bake/group_bake.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/parallel.h"
 #include "runtime/bake/surface_baker.h"
 #include "runtime/field/light_groups.h"
+#include "runtime/field/live_light.h"
 #include "runtime/field/tracer_cpu.h"
 
 namespace sconce
@@ -59,17 +61,48 @@ void agreeOnKnown(FieldData& field)
                 });
 }
 
+/// Takes lights of no extent that no group names out of the groups, which is what moves.
+/// @param groups, selected  of the scene; the one of all other light goes where nothing is left in it, unless it is the only one
+std::vector<uint32_t> takeLiveLights(std::vector<LightGroupDesc>& groups, std::vector<LightSelection>& selected)
+{
+    const auto rest = std::ranges::find_if(groups, [](const LightGroupDesc& group) { return group.members.empty(); });
+    if (rest == groups.end()) return {};
+    LightSelection& others = selected[size_t(rest - groups.begin())];
+    std::vector<uint32_t> live = std::exchange(others.lights, {});
+    if (groups.size() > 1 && others.materials.empty() && !others.sky)
+    {
+        selected.erase(selected.begin() + (rest - groups.begin()));
+        groups.erase(rest);
+    }
+    return live;
+}
+
+std::string groupFault(const BakeSettings& settings)
+{
+    if (settings.chart != gpu::kChartCube || settings.surfaceTexels == 0 || settings.light)
+        return "light groups are kept of surface light on cube faces; give surface texels, and the chart cube";
+    if (settings.liveLinks == 0) return {};
+    if (!settings.rays) return "live links are found by rays to triangles; give rays, or gather by triangles";
+    if (settings.liveLinks > settings.surfaceRays)
+        return fmt::format("there are {} live links of {} rays that gather surface light; give no more links than rays", settings.liveLinks,
+                           settings.surfaceRays);
+    return {};
+}
+
 } // namespace
 
 Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                   std::vector<LightGroupDesc> groups, const Progress& progress, BakeReport& report)
 {
-    const auto selected = selectLights(scene, groups);
+    if (settings.liveLinks > 0 && groups.empty()) groups.push_back({"rest", {}});
+    auto selected = selectLights(scene, groups);
     if (!selected) return selected.error();
-    if (settings.chart != gpu::kChartCube || settings.surfaceTexels == 0 || settings.light)
-        return Error{ErrorCode::badArgument,
-                     "Bake: light groups are kept of surface light on cube faces; give surface texels, and the chart cube"};
+    if (std::string fault = groupFault(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
+    Scene fixed = scene; // what doesn't move
+    const std::vector<uint32_t> live = settings.liveLinks > 0 ? takeLiveLights(groups, *selected) : std::vector<uint32_t>();
+    for (const uint32_t light : live) fixed.lights[light].intensity = vec3(0.0f);
     LightLayout layout;
+    layout.liveLinks = settings.liveLinks;
     BakeSettings own = settings;
     own.layout = &layout;
     const auto baked = [&](const Scene& lit, const std::string& name, BakeReport& spent)
@@ -82,7 +115,7 @@ Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, st
     if (!field) return field;
     for (size_t g = 0; g < groups.size(); ++g)
     {
-        Scene alone = scene;
+        Scene alone = fixed;
         for (size_t other = 0; other < groups.size(); ++other)
             if (other != g) dimLights(alone, (*selected)[other], vec3(0.0f));
         BakeReport spent;
@@ -98,7 +131,18 @@ Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, st
         field->groups.push_back(groupOf(std::move(*part), groups[g]));
     }
     agreeOnKnown(*field);
-    if (auto status = mixGroups(*field, std::vector<vec3>(groups.size(), vec3(1.0f))); !status) return status.error();
+    const std::vector<vec3> weights(groups.size(), vec3(1.0f));
+    if (settings.liveLinks == 0)
+    {
+        if (auto status = mixGroups(*field, weights); !status) return status.error();
+        return field;
+    }
+    field->live = std::move(layout.live);
+    std::vector<Light> lights;
+    for (const uint32_t light : live) lights.push_back(scene.lights[light]);
+    auto gpu = Gpu::create(host);
+    if (!gpu) return gpu.error();
+    if (auto status = relightField(**gpu, *field, lights, weights); !status) return status.error();
     return field;
 }
 

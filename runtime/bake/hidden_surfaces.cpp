@@ -252,4 +252,28 @@ void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::s
     lit.surfaceLight.insert(lit.surfaceLight.end(), table.begin(), table.end());
 }
 
+std::vector<HiddenLinks> hiddenLinks(const FieldData& lit, const HiddenPlaces& of, const TriangleGather& triangles, uint32_t count)
+{
+    const size_t slots = lit.info.hidden >> gpu::kHiddenShiftBits, table = lit.surfaceLight.size() - hiddenWords(lit.info);
+    std::vector<HiddenLinks> all(of.keys.size());
+    parallelFor(all.size(),
+                [&](size_t i)
+                {
+                    const auto [first, end] = of.keys[i];
+                    const uint32_t key = of.places[first].key;
+                    size_t slot = Text::hiddenSlot(key, uint32_t(slots));
+                    while (lit.surfaceLight[table + 2 * slot] != key) slot = (slot + 1) % slots;
+                    all[i].word = uint32_t(table + 2 * slot + 1);
+                    const uint32_t asked = uint32_t(std::min<size_t>({end - first, kPlacesOfKey, count}));
+                    for (uint32_t k = 0; k < asked; ++k)
+                    {
+                        const Place& place = of.places[first + k * (end - first) / asked];
+                        const uint32_t own = count * (k + 1) / asked - count * k / asked;
+                        const auto links = triangles.linksAt(place.point, place.normal, place.grazing, own, glm::uvec2(key, k));
+                        all[i].links.insert(all[i].links.end(), links.begin(), links.end());
+                    }
+                });
+    return all;
+}
+
 } // namespace sconce

@@ -35,4 +35,15 @@ struct HiddenPlaces
 void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent,
                          std::optional<HiddenPlaces>* places = nullptr);
 
+/// Where the light of a hidden surface comes from.
+struct HiddenLinks
+{
+    uint32_t word; // of FieldData::surfaceLight, that its light is
+    std::vector<uint32_t> links;
+};
+/// Of all hidden surfaces of a field, some links at each of a few places of theirs.
+/// @param places  that they were found at
+/// @param count   links of each
+std::vector<HiddenLinks> hiddenLinks(const FieldData& lit, const HiddenPlaces& places, const TriangleGather& triangles, uint32_t count);
+
 } // namespace sconce

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/numbers.h"
+#include "runtime/field/tracer_cpu.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "shaders/shared/pure.h"
 
@@ -128,9 +129,15 @@ Status SurfaceBaker::gatherTriangles(uint32_t probe)
     const size_t count = texelsOfProbe();
     std::vector<vec4> straight(count), arriving(count), moments(directions() ? count : 0);
     std::vector<gpu::SurfaceTexel> sending(count);
-    std::vector<uint32_t> shine(count);
-    desc.triangles->gather(
-        probe, {std::span(links).subspan(probe * count * desc.rays, count * desc.rays), straight, arriving, shine, moments, sending});
+    std::vector<uint32_t> shine(count), direct(desc.live ? count : 0);
+    desc.triangles->gather(probe, {std::span(links).subspan(probe * count * desc.rays, count * desc.rays), straight, arriving, shine,
+                                   moments, sending, direct});
+    for (size_t i = 0; i < direct.size(); ++i)
+    {
+        const uint32_t reach = straight[i].w > 0.0f ? twin::LightFieldTwin<float>::packReach(straight[i].w) : 0u;
+        const bool known = (sending[i].normal & gpu::kSurfaceKnown) != 0;
+        liveTexels.push_back({known ? sending[i].albedo : 0u, direct[i], known ? sending[i].normal | reach << gpu::kReachShift : 0u});
+    }
     const auto write = [&](const Buffer& buffer, const auto& values)
     { return values.empty() ? success() : gpu->upload(buffer, probe * count * sizeof(values[0]), std::as_bytes(std::span(values))); };
     if (auto status = write(first, straight); !status) return status;
@@ -256,6 +263,39 @@ Status SurfaceBaker::refine(FieldData& lit, float share, LightLayout* layout)
     lightHiddenSurfaces(lit, *desc.triangles, before, layout ? &layout->hidden : nullptr);
     refineTexels(lit, *desc.triangles, before, share, layout ? &layout->refined : nullptr);
     return success();
+}
+
+LiveTransport SurfaceBaker::transport(const FieldData& lit, uint32_t count, const HiddenPlaces& hidden) const
+{
+    assert(desc.live && desc.triangles && count <= desc.rays && liveTexels.size() == texels());
+    LiveTransport live;
+    live.links = count;
+    live.texels = liveTexels;
+    for (uint32_t probe = 0; probe < lit.info.probeCount; ++probe)
+    {
+        const auto own = links.begin() + std::ptrdiff_t(probe * texelsOfProbe() * desc.rays);
+        live.texelLinks.insert(live.texelLinks.end(), own, own + std::ptrdiff_t(texelsOfProbe() * count));
+    }
+    std::vector<std::vector<uint32_t>> linksOf; // of each place
+    for (size_t facing = 0; facing < cells.straight.size(); ++facing)
+    {
+        if (cells.straight[facing].x < 0.0f) continue;
+        live.places.push_back(uint32_t(surfaceTexelWords(lit.info) + gpu::kCellWords * (facing / 6) + facing % 6));
+        const auto own = cells.links.begin() + std::ptrdiff_t(facing * desc.rays);
+        linksOf.emplace_back(own, own + std::ptrdiff_t(count));
+    }
+    const std::vector<HiddenLinks> below = hiddenLinks(lit, hidden, *desc.triangles, count);
+    for (const HiddenLinks& place : below)
+    {
+        live.places.push_back(place.word);
+        linksOf.push_back(place.links);
+    }
+    live.placeLinks.resize(count * live.places.size());
+    for (size_t place = 0; place < linksOf.size(); ++place)
+        for (size_t i = 0; i < count; ++i) live.placeLinks[i * live.places.size() + place] = linksOf[place][i];
+    live.tints = desc.triangles->tints();
+    live.tints.resize(gpu::kTints, vec3(1.0f));
+    return live;
 }
 
 } // namespace sconce

@@ -19,6 +19,8 @@ namespace sconce
 /// other light, so that the words of all are of the same places.
 struct LightLayout
 {
+    uint32_t liveLinks = 0; // that `live` is to have; 0: it isn't asked for
+    LiveTransport live;
     std::optional<Lamps> lamps;
     std::optional<HiddenPlaces> hidden;
     std::optional<RefinedPlaces> refined;
@@ -36,6 +38,7 @@ public:
         uint32_t shadowRays = 0;                   // a texel, to emitters; at most gpu::kMostShadowRays
         float offset = 0.0f;                       // field units that rays through the field start off their surface
         const TriangleGather* triangles = nullptr; // gathers in their place, by as many rays
+        bool live = false;                         // transport() will be asked for; with triangles
     };
     /// @param field   with distances, octree and surfaceSize; it is only read
     /// @param texels  of all probes, [probe][6 surfaceSize^2]
@@ -55,6 +58,10 @@ public:
     /// @param share   of all texels, at most
     /// @param layout  where; null: found
     Status refine(FieldData& lit, float share, LightLayout* layout = nullptr);
+    /// What lets lights move, but for the albedo: after refine().
+    /// @param count  links of each texel and place, at most Desc::rays
+    /// @param hidden  that the field was refined with
+    LiveTransport transport(const FieldData& lit, uint32_t count, const HiddenPlaces& hidden) const;
     uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
 
 private:
@@ -86,7 +93,8 @@ private:
     Buffer tilts, tilted;        // the same, where the field has directions
     std::vector<uint32_t> links; // [probe][ray][texel]
     TriangleGather::Cells cells; // by rays to triangles
-    bool lit = false;            // the light without a bounce is made
+    std::vector<gpu::LiveTexel> liveTexels;
+    bool lit = false; // the light without a bounce is made
 };
 
 } // namespace sconce

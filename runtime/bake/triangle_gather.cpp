@@ -20,6 +20,8 @@ namespace
 {
 
 using gpu::GpuLight;
+using gpu::kLightDirectional;
+using gpu::kLightSpot;
 using gpu::kLinkDark;
 using gpu::kLinkNone;
 using gpu::kLinkSky;
@@ -37,6 +39,7 @@ struct Gatherer : LightFieldTwin<float>
 {
 #include "shaders/shared/brdf_text.h"
 
+#include "shaders/shared/delta_light.h"
 #include "shaders/shared/gathered_rays.h"
 #include "shaders/shared/polygon_light.h"
 
@@ -257,19 +260,10 @@ struct Gatherer : LightFieldTwin<float>
         vec3 sum(0.0f);
         for (const GpuLight& light : lights.first(lightsHeader.deltaCount))
         {
-            vec3 toLight = -light.direction, given = light.intensity;
-            float far = 2.0f * field.diagonal;
-            if (light.type != gpu::kLightDirectional)
-            {
-                const vec3 away = light.position - point;
-                far = std::max(length(away), 1e-7f);
-                toLight = away / far;
-                given *= distanceAttenuation(far, light.range);
-                if (light.type == gpu::kLightSpot)
-                    given *= spotAttenuation(-dot(toLight, light.direction), light.innerCone, light.outerCone);
-            }
-            const float cosine = dot(toLight, place.normal);
-            if (cosine > 0.0f && luminance(given) > 0.0f && emitterReaches(point, toLight, far, place.normal)) sum += cosine * given;
+            const DeltaLight at = deltaLightAt(light, light.type, point, 2.0f * field.diagonal);
+            const float cosine = dot(at.toLight, place.normal);
+            if (cosine > 0.0f && luminance(at.irradiance) > 0.0f && emitterReaches(point, at.toLight, at.distance, place.normal))
+                sum += cosine * at.irradiance;
         }
         return sum;
     }
@@ -357,6 +351,13 @@ struct Gatherer : LightFieldTwin<float>
         known.albedo = packRootOfColor(scatteredBy(place.surface) / all * unpackRootOfColor(known.albedo));
         known.sent = packSharedExponent(unpackSharedExponent(known.sent) / (1.0f - onward));
         return known;
+    }
+
+    /// What a texel sends of light straight from lights of no extent over what arrives, see TriangleGather::Target::direct.
+    uint directOf(const gpu::SurfaceTexel& known, const Place& place) const
+    {
+        const float onward = shareOnward(place.surface, luminance(hemisphericalSpecular(place.surface)));
+        return packSharedExponent(unpackRootOfColor(known.albedo) / (1.0f - onward));
     }
 
     /// A patch seen from within some of its widths is no disc on its axis: there rays that meet its triangle count.
@@ -510,6 +511,7 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                         text.slot = row * side + size_t(x);
                         target.first[text.slot] = target.light[text.slot] = vec4(0.0f);
                         target.reflected[text.slot] = 0;
+                        if (!target.direct.empty()) target.direct[text.slot] = 0;
                         if (!target.tilts.empty()) target.tilts[text.slot] = vec4(0.0f);
                         if (!(own[text.slot].normal & gpu::kSurfaceKnown)) continue;
                         text.brought = vec3(0.0f);
@@ -530,6 +532,9 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                         gpu::SurfaceTexel lit = text.withLamps(own[text.slot], text.worldOf(point), plane);
                         lit.normal |= twin::Gatherer::packGrazing(grazing);
                         target.sending[text.slot] = exact ? text.sending(lit, *exact) : lit;
+                        if (!target.direct.empty())
+                            target.direct[text.slot] = exact ? text.directOf(own[text.slot], *exact)
+                                                             : text.packSharedExponent(text.unpackRootOfColor(own[text.slot].albedo));
                         target.light[text.slot].w = got.variance;
                         target.reflected[text.slot] = text.packSharedExponent(text.brought / std::max(got.ends.all, 1.0f));
                         target.first[text.slot] = vec4(got.light, text.knowsTooLittle(got.ends, got.asked) ? gpu::kNotKnown : got.reach);
@@ -580,6 +585,16 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
             !text.knowsTooLittle(got.ends, got.asked),
             text.meetsSeen(point, normal, sample, links, grazing),
             std::ranges::find(links, gpu::kLinkSky) == links.end()};
+}
+
+std::vector<uint32_t> TriangleGather::linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const
+{
+    std::vector<uint32_t> links(rays);
+    Desc fewer = desc;
+    fewer.rays = rays;
+    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, links);
+    text.gatherAt(point, normal, normal, sample, grazing);
+    return links;
 }
 
 TriangleGather::Cells TriangleGather::gatherCells() const

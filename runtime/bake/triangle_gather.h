@@ -40,6 +40,7 @@ public:
         // Becomes what a ray that ends there brings: it reflects by its diffuse lobe alone, as rays that meet the others go on; but the
         // light of what has no extent it reflects by all its lobes as if they were diffuse.
         std::span<gpu::SurfaceTexel> sending;
+        std::span<uint32_t> direct; // RGB9E5: what it sends of light of no extent over what arrives; empty: not asked for
     };
     void gather(uint32_t probe, const Target& target) const;
     /// Colours of the scene's metals, of luminance 1, the first white: at most gpu::kTints.
@@ -79,6 +80,8 @@ public:
     /// @param grazing  of its surface, see grazingOf()
     /// @param rays    at most Desc's
     Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, std::span<const uint32_t> sent) const;
+    /// Where the rays of such a place end.
+    std::vector<uint32_t> linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const;
     /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in
     /// gathered_rays.h; 0 of metals.
     float grazingOf(float metallic, float roughness) const;

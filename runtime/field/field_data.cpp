@@ -28,8 +28,16 @@ FieldBytes bytesByPart(const FieldData& field)
     bytes.irradiance = (field.irradiance.size() + field.patches.size()) * sizeof(uint32_t) + bytes.surface + bytes.lamps;
     for (const LightGroup& group : field.groups)
         for (const LightPart& part : kLightParts) bytes.groups += (group.*part.share).size() * sizeof(uint32_t);
+    bytes.live = bytesOf(field.live);
     bytes.index = field.octree.bytes() + field.probes.size() * sizeof(gpu::ProbeHeader);
     return bytes;
+}
+
+size_t bytesOf(const LiveTransport& live)
+{
+    return live.texels.size() * sizeof(gpu::LiveTexel) +
+           (live.texelLinks.size() + live.places.size() + live.placeLinks.size() + live.albedo.size()) * sizeof(uint32_t) +
+           live.tints.size() * sizeof(glm::vec3);
 }
 
 uint32_t coarsestLevel(uint32_t faceSize)

@@ -12,6 +12,7 @@
 #include "scene/light_groups.h"
 #include "shaders/shared/lamps.h"
 #include "shaders/shared/light_field.h"
+#include "shaders/shared/live_light.h"
 #include "svo/octree.h"
 
 namespace sconce
@@ -25,6 +26,20 @@ struct LightGroup
     glm::vec3 sky{0.0f};                                                   // of info.sky
     std::vector<glm::vec3> lamps;                                          // of FieldData::lamps, their radiance
     std::vector<uint32_t> radiance, irradiance, prefiltered, surfaceLight; // as the field's; what is no light in them is the same in all
+};
+
+/// What a field needs so that lights of no extent may move in it: where the light that each texel sends goes. Made by a bake, and nothing
+/// of it depends on light (shaders/shared/live_light.h).
+struct LiveTransport
+{
+    uint32_t links = 0;                 // a texel, and a place; 0: the field is static
+    std::vector<gpu::LiveTexel> texels; // of surface light, all probes
+    std::vector<uint32_t> texelLinks;   // [probe][link][texel of the probe], as gpu::kLinkSky and its like
+    std::vector<uint32_t> places;       // words of FieldData::surfaceLight that are no texels
+    std::vector<uint32_t> placeLinks;   // [link][place]
+    std::vector<glm::vec3> tints;       // gpu::kTints colours of metals that links name
+    std::vector<uint32_t> albedo;       // [probe][face][y][x], half the radiance's texels a side, 5:6:5, two to a word
+    std::vector<Light> lights;          // that the field's light is of, besides its groups'
 };
 
 /// A baked light field in host memory: what a .sconce file holds. Layouts of the words: shaders/shared/light_field.h.
@@ -46,6 +61,7 @@ struct FieldData
     std::vector<gpu::Lamp> lamps;       // at most gpu::kMostLamps; only with surface light
     std::vector<uint32_t> lampMaps;     // theirs, one after another; firstWord counts the lamps' own words, too
     std::vector<LightGroup> groups;     // at most kMostLightGroups; what stands above is their sum. Empty: baked as one
+    LiveTransport live;                 // with groups: of all light that doesn't move
     Octree octree;
     uint32_t resolution = 0; // as asked for: the side of an octahedral map; cube faces have half of it
     uint32_t bounces = 0;
@@ -73,9 +89,13 @@ struct FieldBytes
     size_t lamps = 0;                                                          // with their maps: of the irradiance
     size_t surface = 0, cells = 0, refined = 0, hidden = 0; // surface light with all that follows its texels, and that: of the irradiance
     size_t groups = 0;                                      // shares of light groups
-    size_t total() const { return distance + normals + radiance + irradiance + index + groups; }
+    size_t live = 0;                                        // what lets lights move
+    size_t total() const { return distance + normals + radiance + irradiance + index + groups + live; }
 };
 FieldBytes bytesByPart(const FieldData& field);
+
+/// Those of FieldData::live.
+size_t bytesOf(const LiveTransport& live);
 
 /// Words of one probe's distance map and the coarsest level of its chain, from chart and size. Faces must be a multiple of 4 from 8 to
 /// 2048.

@@ -81,6 +81,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.gpu = gpu.shared_from_this();
     made.info = field.info;
     made.effects = field.effects;
+    made.headers = field.probes;
     made.groupCount = uint32_t(field.groups.size());
     struct Part
     {
@@ -175,6 +176,9 @@ Status LightField::State::setQuality(const Quality& quality)
                                  prefiltered.address(),
                                  surface.address(),
                                  lamps.address(),
+                                 live,
+                                 albedo,
+                                 radianceWeight,
                                  lampCount};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
 }
@@ -196,7 +200,8 @@ std::array<uint32_t, 2> LightField::constants() const
     std::array<uint32_t, 2> values{};
     values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
                                  (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
-                                 (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u);
+                                 (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
+                                 (shared->live != 0 ? gpu::kHoldsLive : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

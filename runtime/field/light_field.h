@@ -16,10 +16,13 @@ struct LightField::State
     gpu::LightFieldInfo info{};
     Buffer block, probes, distance, radiance, irradiance, prefiltered, surface, patches, lamps;
     uint32_t lampCount = 0, groupCount = 0;
+    VkDeviceAddress live = 0, albedo = 0; // of LiveLight, which keeps them; 0: light is static
+    vec3 radianceWeight{1.0f};            // see gpu::FieldBlock
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
     GpuImage octree;
     DescriptorSet set;
     std::vector<std::string> effects;
+    std::vector<gpu::ProbeHeader> headers; // of the probes
     uint64_t bytes = 0;
 
     Status setQuality(const Quality& quality);

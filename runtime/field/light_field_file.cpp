@@ -19,6 +19,7 @@
 #include "base/limits.h"
 #include "base/numbers.h"
 #include "base/safe_file.h"
+#include "runtime/field/live_light.h"
 
 namespace sconce
 {
@@ -91,11 +92,18 @@ enum Section : uint32_t
     lamps,       // these two since version 6
     lampMaps,
     groupShares, // since version 7: of each group its radiance, irradiance, prefiltered radiance, surface light
+    liveTexels,  // these since version 8: of LiveTransport
+    liveLinks,   // of texels
+    livePlaces,
+    livePlaceLinks,
+    liveTints,
+    liveAlbedo,
     sectionCount
 };
-constexpr const char* kSectionNames[sectionCount] = {"meta",          "info",   "probes",        "distance",    "radiance",
-                                                     "irradiance",    "octree", "octree texels", "prefiltered", "patches",
-                                                     "surface light", "lamps",  "lamp maps",     "light groups"};
+constexpr const char* kSectionNames[sectionCount] = {"meta",          "info",        "probes",           "distance",     "radiance",
+                                                     "irradiance",    "octree",      "octree texels",    "prefiltered",  "patches",
+                                                     "surface light", "lamps",       "lamp maps",        "light groups", "live texels",
+                                                     "live links",    "live places", "live place links", "live tints",   "live albedo"};
 
 /// The scalar part of an Octree.
 struct OctreeHeader
@@ -183,6 +191,12 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         rawBytes[lamps], // lampProblem() looks at these two
         rawBytes[lampMaps],
         rawBytes[groupShares], // groupProblem() looks at these
+        rawBytes[liveTexels],  // and liveProblem() at these
+        rawBytes[liveLinks],
+        rawBytes[livePlaces],
+        rawBytes[livePlaceLinks],
+        rawBytes[liveTints],
+        rawBytes[liveAlbedo],
     };
     for (uint32_t section = 0; section < sectionCount; ++section)
     {
@@ -297,6 +311,32 @@ std::string groupProblem(const FieldData& field)
     return {};
 }
 
+/// What is wrong with what lets lights move; empty when every link leads to a texel.
+std::string liveProblem(const FieldData& field)
+{
+    const LiveTransport& live = field.live;
+    const gpu::LightFieldInfo& i = field.info;
+    if (live.links == 0) return bytesOf(live) > 0 ? "it has live light without links" : "";
+    if (live.links > knobs::liveLinks.most) return fmt::format("it has {} live links a texel, above {}", live.links, knobs::liveLinks.most);
+    const uint64_t texels = uint64_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount, half = i.faceSize / 2;
+    if (field.groups.empty() || field.surfaceLight.empty()) return "it has live light without light groups or surface light";
+    if (live.texels.size() != texels || live.texelLinks.size() != texels * live.links ||
+        live.placeLinks.size() != live.places.size() * live.links || live.tints.size() != gpu::kTints ||
+        live.albedo.size() != (6 * half * half * i.probeCount + 1) / 2)
+        return "its live light has another size than its surface light";
+    const auto lost = [&](uint32_t link) {
+        return link < gpu::kLinkDark &&
+               ((link & ((1u << gpu::kLinkTexelBits) - 1)) >= texels || link >> gpu::kLinkTexelBits >= gpu::kTints);
+    };
+    if (std::ranges::any_of(live.texelLinks, lost) || std::ranges::any_of(live.placeLinks, lost))
+        return "a link of its live light leads to no texel";
+    if (std::ranges::any_of(live.places, [&](uint32_t word) { return word < texels || word >= field.surfaceLight.size(); }))
+        return "a place of its live light is not in its surface light";
+    if (!std::ranges::all_of(live.tints, [](vec3 tint) { return finite(tint); })) return "a tint of its live light is not finite";
+    if (std::string fault = lightFault(live.lights); !fault.empty()) return "of its live lights " + fault;
+    return {};
+}
+
 /// What is wrong with the values that addressing relies on; empty when all is well.
 std::string contentProblem(const FieldData& field)
 {
@@ -310,6 +350,7 @@ std::string contentProblem(const FieldData& field)
         return "its scene bounds are not finite";
     if (std::string problem = lampProblem(field); !problem.empty()) return problem;
     if (std::string problem = groupProblem(field); !problem.empty()) return problem;
+    if (std::string problem = liveProblem(field); !problem.empty()) return problem;
     const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
     const size_t texels = size_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount;
     for (size_t texel = 0; texel < std::min(texels, field.surfaceLight.size()); ++texel)
@@ -369,6 +410,16 @@ std::string metaText(const FieldData& field)
         for (const vec3& radiance : group.lamps) one["lamps"].push_back(numbers(radiance));
         json["groups"].push_back(one);
     }
+    if (field.live.links > 0) json["live"]["links"] = field.live.links;
+    for (const Light& light : field.live.lights)
+        json["live"]["lights"].push_back({{"name", light.name},
+                                          {"type", uint32_t(light.type)},
+                                          {"position", numbers(light.position)},
+                                          {"direction", numbers(light.direction)},
+                                          {"intensity", numbers(light.intensity)},
+                                          {"range", light.range},
+                                          {"inner_cone", light.innerCone},
+                                          {"outer_cone", light.outerCone}});
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -408,6 +459,35 @@ bool applyGroups(const nlohmann::json& json, std::vector<LightGroup>& groups)
     return true;
 }
 
+/// Links and lights of live light.
+bool applyLive(const nlohmann::json& json, LiveTransport& live)
+{
+    if (!json.is_object() || !json.contains("links") || !json["links"].is_number_unsigned()) return false;
+    live.links = uint32_t(std::min<uint64_t>(json["links"].get<uint64_t>(), UINT32_MAX));
+    if (!json.contains("lights")) return true;
+    if (!json["lights"].is_array() || json["lights"].size() > kMostLiveLights) return false;
+    for (const nlohmann::json& one : json["lights"])
+    {
+        Light light;
+        const auto number = [&](const char* key, float& value)
+        {
+            if (!one.contains(key) || !one[key].is_number()) return false;
+            value = one[key].get<float>();
+            return true;
+        };
+        const auto three = [&](const char* key, vec3& value) { return one.contains(key) && applyNumbers(one[key], value); };
+        if (!one.is_object() || !one.contains("name") || !one["name"].is_string() || !one.contains("type") ||
+            !one["type"].is_number_unsigned() || one["type"].get<uint64_t>() > uint64_t(LightType::spot) ||
+            !three("position", light.position) || !three("direction", light.direction) || !three("intensity", light.intensity) ||
+            !number("range", light.range) || !number("inner_cone", light.innerCone) || !number("outer_cone", light.outerCone))
+            return false;
+        light.name = one["name"].get<std::string>();
+        light.type = LightType(one["type"].get<uint32_t>());
+        live.lights.push_back(std::move(light));
+    }
+    return true;
+}
+
 /// False when the text is not what metaText() writes.
 bool applyMeta(std::string_view text, FieldData& field)
 {
@@ -429,7 +509,8 @@ bool applyMeta(std::string_view text, FieldData& field)
         if (!effect.is_string()) return false;
         field.effects.push_back(effect.get<std::string>());
     }
-    return !json.contains("groups") || applyGroups(json["groups"], field.groups);
+    return (!json.contains("groups") || applyGroups(json["groups"], field.groups)) &&
+           (!json.contains("live") || applyLive(json["live"], field.live));
 }
 
 /// An open file of known size.
@@ -604,7 +685,9 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     std::vector<uint32_t> shares;
     for (const LightGroup& group : field.groups)
         for (const LightPart& part : kLightParts) shares.insert(shares.end(), (group.*part.share).begin(), (group.*part.share).end());
-    const uint32_t sectionsHere = field.groups.empty() ? uint32_t(groupShares) : uint32_t(sectionCount);
+    const uint32_t sectionsHere = field.live.links > 0   ? uint32_t(sectionCount)
+                                  : field.groups.empty() ? uint32_t(groupShares)
+                                                         : uint32_t(liveTexels);
     const std::span<const std::byte> sections[sectionCount] = {
         std::as_bytes(std::span(text)),
         bytesOf(field.info),
@@ -620,6 +703,12 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
         std::as_bytes(std::span(field.lamps)),
         std::as_bytes(std::span(field.lampMaps)),
         std::as_bytes(std::span(shares)),
+        std::as_bytes(std::span(field.live.texels)),
+        std::as_bytes(std::span(field.live.texelLinks)),
+        std::as_bytes(std::span(field.live.places)),
+        std::as_bytes(std::span(field.live.placeLinks)),
+        std::as_bytes(std::span(field.live.tints)),
+        std::as_bytes(std::span(field.live.albedo)),
     };
     uint64_t rawBytes[sectionCount] = {}, blockCount = 0;
     for (uint32_t section = 0; section < sectionsHere; ++section)
@@ -703,6 +792,12 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     field.surfaceLight.resize(rawBytes[surface] / sizeof(uint32_t));
     field.lamps.resize(rawBytes[lamps] / sizeof(gpu::Lamp));
     field.lampMaps.resize(rawBytes[lampMaps] / sizeof(uint32_t));
+    field.live.texels.resize(rawBytes[liveTexels] / sizeof(gpu::LiveTexel));
+    field.live.texelLinks.resize(rawBytes[liveLinks] / sizeof(uint32_t));
+    field.live.places.resize(rawBytes[livePlaces] / sizeof(uint32_t));
+    field.live.placeLinks.resize(rawBytes[livePlaceLinks] / sizeof(uint32_t));
+    field.live.tints.resize(rawBytes[liveTints] / sizeof(vec3));
+    field.live.albedo.resize(rawBytes[liveAlbedo] / sizeof(uint32_t));
     const std::pair<Section, std::span<std::byte>> parts[] = {
         {probes, std::as_writable_bytes(std::span(field.probes))},
         {distance, std::as_writable_bytes(std::span(field.distance))},
@@ -715,6 +810,12 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {lamps, std::as_writable_bytes(std::span(field.lamps))},
         {lampMaps, std::as_writable_bytes(std::span(field.lampMaps))},
         {groupShares, std::as_writable_bytes(std::span(shares))},
+        {liveTexels, std::as_writable_bytes(std::span(field.live.texels))},
+        {liveLinks, std::as_writable_bytes(std::span(field.live.texelLinks))},
+        {livePlaces, std::as_writable_bytes(std::span(field.live.places))},
+        {livePlaceLinks, std::as_writable_bytes(std::span(field.live.placeLinks))},
+        {liveTints, std::as_writable_bytes(std::span(field.live.tints))},
+        {liveAlbedo, std::as_writable_bytes(std::span(field.live.albedo))},
     };
     for (const auto& [section, raw] : parts)
         if (Status status = readInto(section, raw); !status) return status.error();

@@ -12,13 +12,14 @@ namespace sconce
 {
 
 /// The .sconce format's version that is written, and the oldest that is read; others are refused with a sentence. Version 3 added the
-/// section `prefiltered` and lets `radiance` be empty; version 4 added `patches`. A field with light groups is written as version 7, others
-/// as 6, which is the same without their section.
-inline constexpr uint32_t kFieldFileVersion = 7, kOldestFieldFileVersion = 2;
-inline constexpr uint32_t kUngroupedFileVersion = 6;
+/// section `prefiltered` and lets `radiance` be empty; version 4 added `patches`. A field with light groups is written as version 7, one
+/// whose lights may move as 8, others as 6, which is the same without their sections.
+inline constexpr uint32_t kFieldFileVersion = 8, kOldestFieldFileVersion = 2;
+inline constexpr uint32_t kGroupedFileVersion = 7, kUngroupedFileVersion = 6;
 inline uint32_t fileVersionOf(const FieldData& field)
 {
-    return field.groups.empty() ? kUngroupedFileVersion : kFieldFileVersion;
+    if (field.live.links > 0) return kFieldFileVersion;
+    return field.groups.empty() ? kUngroupedFileVersion : kGroupedFileVersion;
 }
 
 /// Writes a light field: whole under its name or not at all; the same field gives the same bytes.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,17 +59,17 @@ template <class Share> vec3 mixed(std::span<const LightGroup> groups, std::span<
     return sum;
 }
 
-vec3 mixedSky(std::span<const LightGroup> groups, std::span<const vec3> weights)
-{
-    return mixed(groups, weights, [](const LightGroup& group) { return group.sky; });
-}
-
 vec3 mixedLamp(std::span<const LightGroup> groups, std::span<const vec3> weights, size_t lamp)
 {
     return mixed(groups, weights, [lamp](const LightGroup& group) { return group.lamps[lamp]; });
 }
 
 } // namespace
+
+vec3 mixedSky(std::span<const LightGroup> groups, std::span<const vec3> weights)
+{
+    return mixed(groups, weights, [](const LightGroup& group) { return group.sky; });
+}
 
 std::vector<LightGroupDesc> groupsOf(std::span<const LightGroup> groups)
 {
@@ -102,7 +103,7 @@ Status mixGroups(FieldData& field, std::span<const vec3> weights)
     return success();
 }
 
-Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const FieldData& data)
+Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const FieldData& data, bool radiance)
 {
     if (data.groups.empty())
         return Error{ErrorCode::badArgument,
@@ -116,13 +117,13 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
     for (size_t i = 0; i < std::size(kLightParts); ++i)
     {
         const size_t words = (data.*kLightParts[i].words).size();
-        if (words == 0) continue;
+        if (words == 0 || (!radiance && kLightParts[i].words == &FieldData::radiance)) continue;
         if (words * data.groups.size() > kMostShareWords)
             return Error{ErrorCode::outOfMemory,
                          fmt::format("{} light groups of {} words each are more than the {} that a shader reaches; bake fewer groups or "
                                      "probes",
                                      data.groups.size(), words, kMostShareWords)};
-        LightGroups::State::Part part{kKinds[i], targets[i], uint32_t(words), {}};
+        LightGroups::State::Part part{kKinds[i], targets[i], uint32_t(words), {}, 0};
         auto buffer = gpu.makeBuffer(words * data.groups.size() * 4, 0, MemoryUse::device, "light groups");
         if (!buffer) return buffer.error();
         part.shares = std::move(*buffer);
@@ -168,9 +169,13 @@ Status LightGroups::set(std::span<const vec3> weights)
 
 void LightGroups::record(VkCommandBuffer cmd, GpuTimer* timer) noexcept
 {
-    State& state = *owned;
-    if (!state.changed) return;
-    state.changed = false;
+    if (owned->changed) recordMix(*owned, cmd, timer);
+}
+
+void recordMix(LightGroups::State& state, VkCommandBuffer cmd, GpuTimer* timer) noexcept
+{
+    using State = LightGroups::State;
+    const bool weighed = std::exchange(state.changed, false);
     const Gpu& gpu = *state.gpu;
     LightField::State& field = state.field.state();
     if (timer) timer->begin(cmd, "light groups");
@@ -192,8 +197,9 @@ void LightGroups::record(VkCommandBuffer cmd, GpuTimer* timer) noexcept
     state.pipeline.bind(cmd, sets);
     for (const State::Part& part : state.parts)
     {
-        state.pipeline.push(cmd, gpu::MixPush{part.target->address(), part.shares.address(), state.weightBuffer.address(), part.words,
-                                              uint32_t(state.groups.size()), part.kind, 0});
+        if (!weighed && part.live == 0) continue; // as it was
+        state.pipeline.push(cmd, gpu::MixPush{part.target->address(), part.shares.address(), state.weightBuffer.address(), part.live,
+                                              part.words, uint32_t(state.groups.size()), part.kind, 0});
         constexpr uint32_t kMostWorkgroups = 65535; // that every device dispatches in a row
         gpu.vk.CmdDispatch(cmd, std::min((part.words + gpu::kMixGroup - 1) / gpu::kMixGroup, kMostWorkgroups), 1, 1);
     }

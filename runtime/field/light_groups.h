@@ -25,10 +25,11 @@ struct LightGroups::State
     std::vector<LightGroup> groups; // without their words
     struct Part
     {
-        uint32_t kind;        // gpu::kMix...
-        const Buffer* target; // of the field
-        uint32_t words;       // of a share
-        Buffer shares;        // [group][word]
+        uint32_t kind;            // gpu::kMix...
+        const Buffer* target;     // of the field
+        uint32_t words;           // of a share
+        Buffer shares;            // [group][word]
+        VkDeviceAddress live = 0; // a share more, of weight 1; 0: none
     };
     std::vector<Part> parts;
     Buffer weightBuffer;
@@ -39,7 +40,14 @@ struct LightGroups::State
 };
 
 /// @param data  that `field` was made from
+/// @param radiance  whether the shares of radiance are mixed, too
 /// Errors: as LightGroups::load().
-Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const FieldData& data);
+Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const FieldData& data, bool radiance = true);
+
+/// LightGroups::record(), whether anything was set or not.
+void recordMix(LightGroups::State& state, VkCommandBuffer cmd, GpuTimer* timer) noexcept;
+
+/// The sky of all groups, each times its weight.
+vec3 mixedSky(std::span<const LightGroup> groups, std::span<const vec3> weights);
 
 } // namespace sconce

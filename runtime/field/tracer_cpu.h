@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include <glm/glm.hpp>
 #include <glm/packing.hpp>
@@ -110,6 +111,23 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
         if constexpr (kCounts) ++read.surface;
         return source.surfaceLight[index];
     }
+    std::span<const uint> live; // incident live light of the texels (live_light.h); empty: there is none
+    bool holdsLive() const
+    {
+        return !live.empty();
+    }
+    vec3 fixedWeight() const
+    {
+        return vec3(real(1));
+    }
+    uint liveWord(uint index) const
+    {
+        return live[index];
+    }
+    uint albedoWord(uint index) const
+    {
+        return source.live.albedo[index];
+    }
     uvec4 octreeTexel(ivec3 p) const
     {
         if constexpr (kCounts) ++read.octree;
@@ -138,6 +156,8 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
 #include "shaders/shared/hidden_light.h"
 
 #include "shaders/shared/surface_light.h"
+
+#include "shaders/shared/live_text.h"
 
 #include "shaders/shared/ray_query.h"
 };

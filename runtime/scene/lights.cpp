@@ -123,14 +123,7 @@ void addDelta(const Scene& scene, const gpu::LightFieldInfo& space, LightList& l
 {
     for (const Light& source : scene.lights)
     {
-        gpu::GpuLight light{};
-        light.position = (source.position - space.origin) / space.scale;
-        light.direction = source.direction;
-        light.intensity = source.type == LightType::directional ? source.intensity : source.intensity / (space.scale * space.scale);
-        light.range = source.range / space.scale;
-        light.innerCone = source.innerCone;
-        light.outerCone = source.outerCone;
-        light.type = uint32_t(source.type);
+        gpu::GpuLight light = deltaLight(source, space);
         uint32_t& layers = source.type == LightType::directional ? list.sunLayers : list.pointLayers;
         light.shadowLayer = int(layers);
         layers += source.type == LightType::directional ? 1 : 6;
@@ -174,6 +167,20 @@ void addAreaShadows(LightList& list)
 }
 
 } // namespace
+
+gpu::GpuLight deltaLight(const Light& source, const gpu::LightFieldInfo& space)
+{
+    gpu::GpuLight light{};
+    light.position = (source.position - space.origin) / space.scale;
+    light.direction = source.direction;
+    light.intensity = source.type == LightType::directional ? source.intensity : source.intensity / (space.scale * space.scale);
+    light.range = source.range / space.scale;
+    light.innerCone = source.innerCone;
+    light.outerCone = source.outerCone;
+    light.type = uint32_t(source.type);
+    light.shadowLayer = kNoShadowMap;
+    return light;
+}
 
 LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, const LightSettings& settings)
 {

@@ -52,6 +52,9 @@ inline constexpr uint64_t kShadowBytes = uint64_t(128) << 20;
 /// spherical Fibonacci set (Keinert et al. 2015) of equal shares. Kinds the scene lacks have no entries.
 LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, const LightSettings& settings);
 
+/// A light of no extent in a field's space, without a shadow map.
+gpu::GpuLight deltaLight(const Light& light, const gpu::LightFieldInfo& space);
+
 /// The views of an entry's shadow map: one for directional lights, six faces for the others.
 std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, float pointNear);
 

@@ -19,6 +19,7 @@ const uint kHoldsRadianceId = 1u;
 const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
 const uint kOnOctahedron = 2u;
 const uint kHoldsRefined = 8u; // some texels of the surface light are refined
+const uint kHoldsLive = 16u; // rays find live light (live_light.h), besides the radiance that is baked
 const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 
 // The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.
@@ -31,13 +32,16 @@ const uint kByTexels = 4u; // words are texels of buffers; else they are read by
     DeviceAddress prefilteredAddress; \
     DeviceAddress surfaceAddress; \
     DeviceAddress lampAddress; \
+    DeviceAddress liveAddress;   /* incident live light of the texels */ \
+    DeviceAddress albedoAddress; /* LiveTransport::albedo */ \
+    vec3 radianceWeight;         /* of the baked radiance, where there is live light */ \
     uint lampCount;
 #ifdef __cplusplus
 struct FieldBlock
 {
     SCONCE_FIELD_BLOCK
 };
-SCONCE_CHECK_SIZE(FieldBlock, 280);
+SCONCE_CHECK_SIZE(FieldBlock, 304);
 #endif
 
 SCONCE_STRUCTS_END

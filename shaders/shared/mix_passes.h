@@ -22,12 +22,13 @@ struct MixPush
     SCONCE_ADDRESS(MixWords) target;    // words of the field
     SCONCE_ADDRESS(MixWords) shares;    // [group][count]
     SCONCE_ADDRESS(MixWeights) weights; // of the groups
+    SCONCE_ADDRESS(MixWords) live;      // a share more, of live light; null: none
     uint count;  // words of a share
     uint groups;
     uint kind;   // kMix...
     uint unused; // to a multiple of 8
 };
-SCONCE_CHECK_SIZE(MixPush, 40);
+SCONCE_CHECK_SIZE(MixPush, 48);
 
 SCONCE_STRUCTS_END
 #endif

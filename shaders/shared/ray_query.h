@@ -38,7 +38,9 @@ SCONCE_FN RayHit answerOf(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
     {
         normal = texelNormal(r.face, r.pixel, r.word);
         // A field of a scene without glossy surfaces has its radiance only prefiltered: the hit is then as blurred as that.
-        radiance = holdsRadiance() ? surfelRadiance(r) : prefilteredRadiance(r.probe, pixelDirection(r.face, r.pixel), real(0.0));
+        if (!holdsRadiance()) radiance = prefilteredRadiance(r.probe, pixelDirection(r.face, r.pixel), real(0.0));
+        else if (holdsLive()) radiance = fixedWeight() * surfelRadiance(r) + liveRadiance(r);
+        else radiance = surfelRadiance(r);
     }
     return answer(origin, direction, r, normal, radiance);
 }

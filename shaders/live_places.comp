@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "light_field.glsl"
+#include "shared/brdf.h"
+#include "shared/sample_pair.h"
+#include "shared/live_light.h"
+#include "shared/gathered_rays.h"
+
+// Live light: of the places of surface light that are no texels. Dispatch: ceil(places / kLiveGroup).
+layout(local_size_x = kLiveGroup) in;
+layout(scalar, push_constant) uniform Push { LivePush push; };
+
+void main()
+{
+    uint place = gl_GlobalInvocationID.x;
+    if (place >= push.places) return;
+    vec3 sum = vec3(0.0);
+    Ends ends = Ends(0.0, 0.0, 0.0);
+    for (uint i = 0u; i < push.links; ++i)
+    {
+        uint link = push.live.data.placeLinks.word[i * push.places + place];
+        if (countEnd(ends, link))
+            sum += push.live.data.tints.value[tintOfLink(link)].xyz * unpackSharedExponent(push.live.data.sent.word[texelOfLink(link)]);
+    }
+    push.live.data.surface.word[push.live.data.places.word[place]] = packKnownLight(perRay(ends) * sum);
+}
