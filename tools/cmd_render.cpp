@@ -73,13 +73,13 @@ Result<double> dimField(Gpu& gpu, const LightField& field, const FieldData& data
     return milliseconds;
 }
 
-/// Lights a field with live links anew, to the end. @return  milliseconds by the device's clock
-Result<double> settle(Gpu& gpu, LiveLight& live, const LightState& state)
+/// Lights a field with live links anew, to the end. @return  milliseconds by the device's clock, a pass
+Result<std::map<std::string, double>> settle(Gpu& gpu, LiveLight& live, const LightState& state)
 {
     if (Status status = live.set(state); !status) return status.error();
-    auto timer = GpuTimer::create(gpu, 2);
+    auto timer = GpuTimer::create(gpu, 8);
     if (!timer) return timer.error();
-    double milliseconds = 0.0;
+    std::map<std::string, double> milliseconds;
     while (!live.settled())
     {
         const Status recorded = gpu.submit(
@@ -89,7 +89,7 @@ Result<double> settle(Gpu& gpu, LiveLight& live, const LightState& state)
                 live.record(cmd, {}, &*timer);
             });
         if (!recorded) return recorded.error();
-        for (const GpuTimer::Scope& scope : timer->read()) milliseconds += scope.milliseconds;
+        for (const GpuTimer::Scope& scope : timer->read()) milliseconds[scope.name] += scope.milliseconds;
     }
     return milliseconds;
 }
@@ -311,7 +311,7 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
     {
         std::vector<Light> lights = lighting.lights;
         turnSun(lights, lighting.path[i]);
-        const Result<double> milliseconds = settle(gpu, live, {lights, lighting.weights});
+        const auto milliseconds = settle(gpu, live, {lights, lighting.weights});
         if (!milliseconds) return fail(milliseconds.error());
         scene.lights.resize(fixed);
         scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
@@ -392,14 +392,15 @@ int runRender(RenderOptions options, const Context& context)
     settings.effects.fieldShadows = options.areaShadows == kField;
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
-    std::optional<double> groupsMs, liveMs;
+    std::optional<double> groupsMs;
+    std::map<std::string, double> liveMs; // by pass
     std::optional<LiveLight> live;
     if (lighting->moves)
     {
         auto made = makeLiveLight(**gpu, *field, *data);
         if (!made) return fail(made.error());
         live = std::move(*made);
-        const Result<double> settled = settle(**gpu, *live, {lighting->lights, lighting->weights});
+        const auto settled = settle(**gpu, *live, {lighting->lights, lighting->weights});
         if (!settled) return fail(settled.error());
         liveMs = *settled;
     }
@@ -445,7 +446,7 @@ int runRender(RenderOptions options, const Context& context)
     json["frames"] = options.frames;
     json["dim"] = options.dims;
     if (groupsMs) json["light_groups_ms"] = *groupsMs;
-    if (liveMs) json["live_light_ms"] = *liveMs;
+    if (live) json["live_light_ms"] = liveMs;
     json["frame_ms"] = drawn->frameMs.empty() ? Json(nullptr) : Json(median(drawn->frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : drawn->passes) json["passes_ms"][pass] = median(drawn->passMs.at(pass));

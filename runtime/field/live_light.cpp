@@ -353,7 +353,12 @@ void LiveLight::record(VkCommandBuffer cmd, const RelightBudget& budget, GpuTime
     State& state = *owned;
     const Gpu& gpu = *state.gpu;
     LightField::State& field = state.field.state();
-    if (timer) timer->begin(cmd, "live light");
+    const auto timed = [&](const char* scope, auto&& pass)
+    {
+        if (timer) timer->begin(cmd, scope);
+        pass();
+        if (timer) timer->end(cmd);
+    };
     // Whoever reads the field's light in work submitted before has done so, and what an earlier record wrote is written.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
@@ -380,21 +385,25 @@ void LiveLight::record(VkCommandBuffer cmd, const RelightBudget& budget, GpuTime
     }
     afterPass(gpu, cmd);
     const Step step{state, cmd};
-    if (darkCount > 0) step.overTexels(state.directPass, count, darkCount);
+    if (darkCount > 0) timed("live direct", [&] { step.overTexels(state.directPass, count, darkCount); });
     const VkDeviceSize texels = VkDeviceSize(24) * field.info.surfaceSize * field.info.surfaceSize;
     state.copies.clear();
     for (const uint32_t probe : state.turn) state.copies.push_back({probe * texels, probe * texels, texels});
-    for (uint32_t bounce = 0; bounce < bounces && count > 0; ++bounce)
-    {
-        step.overTexels(state.bouncePass, 0, count);
-        gpu.vk.CmdCopyBuffer(cmd, state.sentNext.handle(), state.sent.handle(), count, state.copies.data());
-        afterPass(gpu, cmd);
-    }
     if (count > 0)
     {
-        step.overTexels(state.filterPass, 0, count);
-        step.overPlaces();
-        step.overLobes(0, count);
+        timed("live bounces",
+              [&]
+              {
+                  for (uint32_t bounce = 0; bounce < bounces; ++bounce)
+                  {
+                      step.overTexels(state.bouncePass, 0, count);
+                      gpu.vk.CmdCopyBuffer(cmd, state.sentNext.handle(), state.sent.handle(), count, state.copies.data());
+                      afterPass(gpu, cmd);
+                  }
+              });
+        timed("live filter", [&] { step.overTexels(state.filterPass, 0, count); });
+        timed("live places", [&] { step.overPlaces(); });
+        timed("live lobes", [&] { step.overLobes(0, count); });
     }
     for (const uint32_t probe : state.turn)
     {
@@ -402,7 +411,6 @@ void LiveLight::record(VkCommandBuffer cmd, const RelightBudget& budget, GpuTime
         done.direct = false;
         done.bounces -= std::min(done.bounces, bounces);
     }
-    if (timer) timer->end(cmd);
     recordMix(state.groups.state(), cmd, timer);
 }
 
