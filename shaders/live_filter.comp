@@ -5,7 +5,7 @@
 #include "live_texels.glsl"
 
 // Live light: a probe's bounced light, blended with that of texels about it on the same surface, as surface_filter.comp blends; its share of the surface
-// light, of finer texels, too; and what rays find. Dispatch: see live_texels.glsl.
+// light, and what rays find. Dispatch: see live_texels.glsl.
 
 const float kReachOfDistance = 0.12, kLeastReach = 0.3; // of the harmonic mean; of a texel's width
 shared uint leaning[64];
@@ -44,13 +44,8 @@ void main()
     leaning[gl_LocalInvocationIndex] = packTilt(tilt);
     barrier(); // two tilts make a word
     if (!t.inside) return;
-    uint word = packKnownLight(light);
-    push.live.data.surface.word[t.index] = word;
+    push.live.data.surface.word[t.index] = packKnownLight(light);
     push.live.data.incident.word[t.index] = packSharedExponent(min(light + unpackSharedExponent(push.live.data.direct.word[t.index]), vec3(kMostStored)));
     if (field.surfaceDirections != 0u && (t.index & 1u) == 0u)
         push.live.data.surface.word[surfaceTexels() + t.index / 2u] = leaning[gl_LocalInvocationIndex] | (leaning[gl_LocalInvocationIndex + 1u] << 16);
-    uint stored = surfaceWord(t.index);
-    if (!isRefined(stored)) return;
-    uint first = refinedWords() + kFineWords * (stored - kRefinedWord);
-    for (uint i = 0u; i < kFineWords; ++i) push.live.data.surface.word[first + i] = word;
 }

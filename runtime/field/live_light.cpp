@@ -16,6 +16,7 @@
 #include "spirv/live_bounce_comp.h"
 #include "spirv/live_direct_comp.h"
 #include "spirv/live_filter_comp.h"
+#include "spirv/live_fine_comp.h"
 #include "spirv/live_lobes_comp.h"
 #include "spirv/live_map_comp.h"
 #include "spirv/live_places_comp.h"
@@ -83,6 +84,15 @@ struct Step
         bind(state.placePass);
         state.placePass.push(cmd, push(0));
         state.gpu->vk.CmdDispatch(cmd, (state.places + gpu::kLiveGroup - 1) / gpu::kLiveGroup, 1, 1);
+        afterPass(*state.gpu, cmd);
+    }
+    void overRefined() const
+    {
+        const uint32_t words = gpu::kFineWords * state.refinedCount;
+        if (words == 0) return;
+        bind(state.finePass);
+        state.finePass.push(cmd, push(0));
+        state.gpu->vk.CmdDispatch(cmd, (words + gpu::kLiveGroup - 1) / gpu::kLiveGroup, 1, 1);
         afterPass(*state.gpu, cmd);
     }
     void overLobes(uint32_t first, uint32_t count) const
@@ -197,6 +207,10 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
     LightField::State& of = field.state();
     made.links = live.links;
     made.places = uint32_t(live.places.size());
+    std::vector<uint32_t> refined;
+    for (uint32_t texel = 0; texel < live.texels.size(); ++texel)
+        if (data.surfaceLight[texel] >= gpu::kRefinedWord) refined.push_back(texel);
+    made.refinedCount = uint32_t(refined.size());
     const size_t probes = data.probes.size(), texels = live.texels.size();
     for (const gpu::ProbeHeader& probe : data.probes) made.probes.push_back({data.info.origin + data.info.scale * probe.centre});
     made.turn.reserve(probes);
@@ -227,7 +241,7 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
          {Given{made.texels, std::as_bytes(std::span(live.texels)), "live texels"},
           Given{made.texelLinks, std::as_bytes(std::span(live.texelLinks)), "links of live texels"},
           Given{made.placeWords, some(live.places), "live places"}, Given{made.placeLinks, some(live.placeLinks), "links of live places"},
-          Given{made.tints, std::as_bytes(std::span(tints)), "tints of metals"},
+          Given{made.refined, some(refined), "refined live texels"}, Given{made.tints, std::as_bytes(std::span(tints)), "tints of metals"},
           Given{made.albedo, std::as_bytes(std::span(live.albedo)), "live albedo"}})
         if (auto status = fill(given.buffer, given.bytes, given.what); !status) return status.error();
     struct Need
@@ -253,10 +267,10 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
         made.bytes += need.buffer.size();
     }
     const gpu::LiveData addresses{
-        made.texels.address(),   made.texelLinks.address(),  made.placeWords.address(), made.placeLinks.address(),
-        made.tints.address(),    made.lightBuffer.address(), made.list.address(),       made.direct.address(),
-        made.bounced.address(),  made.tilts.address(),       made.sent.address(),       made.sentNext.address(),
-        made.incident.address(), made.surface.address(),     made.irradiance.address(), made.prefiltered.address()};
+        made.texels.address(),     made.texelLinks.address(),  made.placeWords.address(), made.placeLinks.address(), made.refined.address(),
+        made.tints.address(),      made.lightBuffer.address(), made.list.address(),       made.direct.address(),     made.bounced.address(),
+        made.tilts.address(),      made.sent.address(),        made.sentNext.address(),   made.incident.address(),   made.surface.address(),
+        made.irradiance.address(), made.prefiltered.address()};
     if (auto status = gpu.upload(made.addresses, 0, std::as_bytes(std::span(&addresses, 1))); !status) return status.error();
     auto cleared = gpu.submit(
         [&](VkCommandBuffer cmd)
@@ -272,6 +286,7 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
                                          {&made.bouncePass, live_bounce_comp},
                                          {&made.filterPass, live_filter_comp},
                                          {&made.placePass, live_places_comp},
+                                         {&made.finePass, live_fine_comp},
                                          {&made.mapPass, live_map_comp},
                                          {&made.lobePass, live_lobes_comp}})
     {
@@ -401,7 +416,12 @@ void LiveLight::record(VkCommandBuffer cmd, const RelightBudget& budget, GpuTime
                       afterPass(gpu, cmd);
                   }
               });
-        timed("live filter", [&] { step.overTexels(state.filterPass, 0, count); });
+        timed("live filter",
+              [&]
+              {
+                  step.overTexels(state.filterPass, 0, count);
+                  step.overRefined();
+              });
         timed("live places", [&] { step.overPlaces(); });
         timed("live lobes", [&] { step.overLobes(0, count); });
     }

@@ -22,14 +22,14 @@ struct LiveLight::State
     std::shared_ptr<Gpu> gpu;
     LightField field;
     LightGroups groups;
-    uint32_t links = 0, places = 0, lightCount = 0;
+    uint32_t links = 0, places = 0, refinedCount = 0, lightCount = 0;
     std::vector<Probe> probes;
     uint32_t next = 0; // of the probes that take their turn
     std::vector<Light> lights;
     std::vector<gpu::GpuLight> packed; // in the field's space
-    Buffer texels, texelLinks, placeWords, placeLinks, tints, albedo, lightBuffer, list, addresses;
+    Buffer texels, texelLinks, placeWords, placeLinks, refined, tints, albedo, lightBuffer, list, addresses;
     Buffer direct, bounced, tilts, sent, sentNext, incident, surface, irradiance, prefiltered;
-    Pipeline directPass, bouncePass, filterPass, placePass, mapPass, lobePass;
+    Pipeline directPass, bouncePass, filterPass, placePass, finePass, mapPass, lobePass;
     bool moved = false;               // lights since the last record
     std::vector<uint32_t> turn, dark; // of a record: probes that are lit, and of them those whose direct light is made; reserved
     std::vector<VkBufferCopy> copies; // reserved

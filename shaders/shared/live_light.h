@@ -28,6 +28,7 @@ struct LiveData
     SCONCE_ADDRESS(BakeWords) links;       // [probe][link][texel of the probe]
     SCONCE_ADDRESS(BakeWords) places;      // words of FieldData::surfaceLight that are no texels: a facing of a cell, a hidden surface
     SCONCE_ADDRESS(BakeWords) placeLinks;  // [link][place]
+    SCONCE_ADDRESS(BakeWords) refined;     // texels that are
     SCONCE_ADDRESS(SurfaceFloats) tints;   // kTints colours of metals
     SCONCE_ADDRESS(LiveLights) lights;
     SCONCE_ADDRESS(BakeWords) probes;      // that this step is about
@@ -41,7 +42,7 @@ struct LiveData
     SCONCE_ADDRESS(BakeWords) irradiance;  // and of FieldData::irradiance
     SCONCE_ADDRESS(BakeWords) prefiltered; // and of FieldData::prefiltered
 };
-SCONCE_CHECK_SIZE(LiveData, 128);
+SCONCE_CHECK_SIZE(LiveData, 136);
 
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LiveAddresses { LiveData data; };
@@ -59,7 +60,8 @@ struct LivePush
 };
 SCONCE_CHECK_SIZE(LivePush, 32);
 
-const uint kLiveShadowRays = 8u; // a texel, at most: of more lights they are drawn
+const uint kLiveShadowRays = 8u; // a point, at most: of more lights they are drawn
+const uint kLivePoints = 2u;     // a side, of a texel, that direct light is asked for
 const uint kLiveGroup = 64u;     // invocations of a workgroup over places and over a probe's lobes
 const float kMostLiveAlbedo = 0.99f; // so that light between mirrors dies away
 

@@ -481,6 +481,73 @@ TEST(Command, LightGroupsAreDimmedInPicturesFilesAndReferences)
     EXPECT_NEAR(compared("live.exr", "truth.exr").at("mean").get<double>(), 1.0, 0.06);
 }
 
+TEST(Command, LightsMoveAfterTheBake)
+{
+    const TestFolder folder;
+    writeText(folder / "p.json", R"({"probes":[{"position":[0.0,1.0,0.0]},{"position":[0.3,0.5,0.3]}]})");
+    const auto lights = [&](const char* name, const char* text)
+    {
+        writeText(folder / name, text);
+        return std::string(folder / name);
+    };
+    const std::string one =
+        lights("one.json", R"({"lights":[{"type":"point","name":"bulb","position":[-0.4,0.9,0.3],"intensity":[2,2,2]}]})");
+    const std::string other = lights("other.json", R"({"lights":[{"type":"point","position":[0.5,1.5,-0.2],"intensity":[0.5,1,3]}]})");
+    const json live =
+        jsonOf(sconceCommand({"bake", "cornell-glossy", "--probes", folder / "p.json", "--lights", one, "--live-links", "8", "--resolution",
+                              "64", "--surface-texels", "26", "--surface-rays", "16", "-o", folder / "f.sconce", "--json"}));
+    EXPECT_EQ(live["live_links"], 8);
+    EXPECT_EQ(live["live_lights"], json::array({"bulb"}));
+    EXPECT_EQ(live["format_version"], 8);
+    EXPECT_NE(sconceCommand({"info", folder / "f.sconce"}).out.find("live: 8 links a texel"), std::string::npos);
+
+    // In the file and in the frame it is the same light, and another one than before.
+    const json relit = jsonOf(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "other.sconce", "--lights", other, "--json"}));
+    EXPECT_EQ(relit["format_version"], 6) << "a static field has nothing of it";
+    const auto drawn = [&](const std::string& field, const std::string& by, const char* picture)
+    {
+        return sconceCommand(
+            {"render", "cornell-glossy", "--field", folder / field, "--lights", by, "--size", "64x36", "-o", folder / picture, "--json"});
+    };
+    const json moved = jsonOf(drawn("f.sconce", other, "moved.exr"));
+    EXPECT_TRUE(moved["live_light_ms"].contains("live direct"));
+    EXPECT_FALSE(jsonOf(drawn("other.sconce", other, "file.exr")).contains("live_light_ms"));
+    EXPECT_FALSE(jsonOf(drawn("f.sconce", one, "before.exr")).contains("live_light_ms")) << "nothing moved";
+    const auto compared = [&](const char* picture, const char* reference)
+    {
+        return jsonOf(sconceCommand({"compare", folder / picture, folder / reference, "--layer", "diffuse_indirect", "--json"}))
+            .at("mse")
+            .get<double>();
+    };
+    EXPECT_EQ(compared("moved.exr", "file.exr"), 0.0);
+    EXPECT_GT(compared("moved.exr", "before.exr"), 1e-6);
+
+    // A day: a picture each, numbered.
+    writeText(folder / "day.csv", "time,x,y,z,r,g,b\n6,1,-0.1,0,1,0.5,0.2\n12,0.2,-1,-0.9,4,4,4\n20,-1,0.2,0,1,0.5,0.2\n");
+    const json day = jsonOf(sconceCommand({"render", "cornell-glossy", "--field", folder / "f.sconce", "--lights", one, "--sun-path",
+                                           folder / "day.csv", "--frames", "3", "--size", "32x18", "-o", folder / "day.exr", "--json"}));
+    ASSERT_EQ(day["pictures"].size(), 3u);
+    for (const char* name : {"day-0000.exr", "day-0001.exr", "day-0002.exr"}) EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+    EXPECT_GT(compared("day-0001.exr", "day-0002.exr"), 1e-6) << "noon and night";
+
+    const auto refused = [&](std::vector<std::string> more, int exit, const char* part)
+    {
+        more.insert(more.begin(), {"render", "cornell-glossy", "--size", "32x18", "-o", folder / "x.exr"});
+        expectSentence(sconceCommand(more), exit, part);
+    };
+    refused({"--field", folder / "other.sconce", "--sun-path", folder / "day.csv"}, 2, "--live-links");
+    writeText(folder / "bad.csv", "time,x,y,z\n1,0,-1,0\n1,0,-1,1\n");
+    refused({"--field", folder / "f.sconce", "--lights", one, "--sun-path", folder / "bad.csv"}, 3, "line 3");
+    refused({"--field", folder / "f.sconce", "--lights", lights("bad.json", R"({"lights":[{"type":"moon"}]})")}, 3, "'moon'");
+    refused({"--field", folder / "f.sconce", "--lights", lights("bad.json", R"({"lights":[{"type":"point","intensity":[-1,0,0]}]})")}, 3,
+            "intensity");
+    expectSentence(sconceCommand({"relight", folder / "other.sconce", "-o", folder / "x.sconce", "--sun", "0,-1,0"}), 2, "--live-links");
+    expectSentence(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "x.sconce"}), 2, "nothing to change");
+    expectSentence(sconceCommand({"bake", "cornell-glossy", "--probes", folder / "p.json", "--live-links", "8", "--gather", "field", "-o",
+                                  folder / "x.sconce"}),
+                   2, "live links");
+}
+
 TEST(Command, ReferenceAndCompareAgree)
 {
     const TestFolder folder;
