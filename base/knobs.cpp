@@ -95,6 +95,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(surfaceTexels),
                                               rowOf(surfaceRays),
                                               rowOf(surfaceRefined),
+                                              rowOf(liveLinks),
                                               rowOf(lampTexels),
                                               rowOf(gather),
                                               rowOf(chart),

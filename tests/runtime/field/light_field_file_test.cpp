@@ -401,7 +401,7 @@ TEST_F(LightFieldFile, LightGroupsComeBackAndAreNoPartOfOtherFields)
     ASSERT_TRUE(saveField(grouped, file));
     const Result<FieldData> back = loadField(file);
     ASSERT_TRUE(back) << back.error().message;
-    EXPECT_EQ(back->fileVersion, kFieldFileVersion);
+    EXPECT_EQ(back->fileVersion, kGroupedFileVersion);
     expectSame(grouped, *back);
     const Result<VerifyReport> report = verifyField(file);
     ASSERT_TRUE(report);
