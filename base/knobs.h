@@ -311,7 +311,7 @@ inline constexpr Knob<uint32_t> liveLinks{
     .what = "Of each texel of the surface light, at most as many as rays gather it, that tell where its light comes from, so that sun, "
             "points and "
             "spots can move afterwards; 0: they stay",
-    .buys = "lights that move (LiveLight, `relight --sun`, `render --sun-path`); a bake more, and 63 KiB a probe and link",
+    .buys = "lights that move (LiveLight, relight --sun, render --sun-path); a bake more, and about 75 KiB a probe and link",
     .readme = true};
 inline constexpr uint32_t kLampTexels[] = {0, 512, 1024, 2048, 4096, 8192};
 inline constexpr Knob<uint32_t> lampTexels{

@@ -48,7 +48,7 @@ void main()
     vec2 uv = (vec2(at.xy) + 0.5) / float(push.size);
     vec3 relative = push.chart == kChartCube ? faceDirection(int(at.z), vec3(2.0 * uv - 1.0, 1.0)) / halfToReal(word)
                                         : directionFromOctahedral(uv) * halfToReal(word);
-    vec3 albedo = vec3(float(material & 31u) / 31.0, float((material >> 5) & 63u) / 63.0, float((material >> 11) & 31u) / 31.0);
+    vec3 albedo = unpackAlbedo(material);
     vec3 normal = unpackNormal8(material >> 16);
     vec3 p = push.centre + relative;
     vec3 gathered = bounceIrradiance(p, normal, push.centre), straight = unpackRadiance(own);

@@ -10,11 +10,6 @@ bool isNull(BakeWords words) { return uvec2(words) == uvec2(0u); }
 /// Position of a texel's centre on its face, in [-1,1].
 vec2 texelOnFace(uvec2 texel, uint faceSize) { return (vec2(texel) + 0.5) * (2.0 / float(faceSize)) - 1.0; }
 
-vec3 unpackAlbedo(uint bits)
-{
-    return vec3(float(bits & 31u) / 31.0, float((bits >> 5) & 63u) / 63.0, float((bits >> 11) & 31u) / 31.0);
-}
-
 /// @param up  [0,1): what is added to a channel's step before the rest is cut off; one of its own for each texel keeps the mean true, on
 ///            which the sum of all bounces hangs
 uint packAlbedo(vec3 a, float up)

@@ -7,7 +7,6 @@
 // Live light: a probe's bounced light, blended with that of texels about it on the same surface, as surface_filter.comp blends; its share of the surface
 // light, and what rays find. Dispatch: see live_texels.glsl.
 
-const float kReachOfDistance = 0.12, kLeastReach = 0.3; // of the harmonic mean; of a texel's width
 shared uint leaning[64];
 
 void main()

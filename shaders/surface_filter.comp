@@ -11,7 +11,6 @@
 
 const float kLikeNoise = 2.0;    // times the two variances, that a squared difference may be
 const float kAlike = 0.02;       // relative difference that never shows
-const float kReachOfDistance = 0.12, kLeastReach = 0.3; // of the harmonic mean; of a texel's width
 
 void main()
 {

@@ -98,6 +98,7 @@ Result<std::map<std::string, double>> settle(Gpu& gpu, LiveLight& live, const Li
 struct Lighting
 {
     std::vector<vec3> weights;  // of the field's groups; empty: as they were baked
+    std::vector<Light> fixed;   // of the scene, that stay
     std::vector<Light> lights;  // that move
     std::vector<SunPlace> path; // of the sun, a picture each; empty: it stays
     bool moves = false;         // live light is to be made
@@ -126,7 +127,12 @@ Result<Lighting> chooseLight(const RenderOptions& options, const FieldData& data
         if (!dimmed) return dimmed.error();
         if (!data.groups.empty()) made.weights = std::move(*dimmed);
     }
+    made.fixed = scene.lights;
     scene.lights.insert(scene.lights.end(), made.lights.begin(), made.lights.end());
+    if (made.moves && options.tracer != "ours")
+        return Error{ErrorCode::badArgument,
+                     fmt::format("--tracer {} finds no light that has moved; relight the field (`sconce relight`), or leave it out.",
+                                 options.tracer)};
     if (options.sunPath.empty()) return made;
     auto path = sunPath(options.sunPath, options.frames);
     if (!path) return path.error();
@@ -302,19 +308,19 @@ double median(std::vector<double> values)
 
 /// A picture for each place of the sun, with light that has settled.
 int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightField& field, LiveLight& live, const Lighting& lighting,
-            const RenderSettings& settings, const Camera& camera, const Context& context)
+            const RenderSettings& settings, const Camera& camera, const EffectPlan& plan, const Context& context)
 {
     const Stopwatch watch;
     Json json;
-    const size_t fixed = scene.lights.size() - lighting.lights.size();
     for (uint32_t i = 0; i < lighting.path.size(); ++i)
     {
         std::vector<Light> lights = lighting.lights;
         turnSun(lights, lighting.path[i]);
         const auto milliseconds = settle(gpu, live, {lights, lighting.weights});
         if (!milliseconds) return fail(milliseconds.error());
-        scene.lights.resize(fixed);
+        scene.lights = lighting.fixed;
         scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
+        capScene(scene, plan);
         const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, context);
         if (!drawn) return fail(drawn.error());
         PictureOptions pictures = options.pictures;
@@ -422,7 +428,7 @@ int runRender(RenderOptions options, const Context& context)
         settings.lightShaders = lightPasses(*baseline);
         settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
     }
-    if (!lighting->path.empty()) return drawDay(options, **gpu, *scene, *field, *live, *lighting, settings, *camera, context);
+    if (!lighting->path.empty()) return drawDay(options, **gpu, *scene, *field, *live, *lighting, settings, *camera, *plan, context);
     const Result<Drawn> drawn = drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, context);
     if (!drawn) return fail(drawn.error());
 
@@ -446,7 +452,11 @@ int runRender(RenderOptions options, const Context& context)
     json["frames"] = options.frames;
     json["dim"] = options.dims;
     if (groupsMs) json["light_groups_ms"] = *groupsMs;
-    if (live) json["live_light_ms"] = liveMs;
+    if (live)
+    {
+        json["live_light_ms"] = liveMs;
+        json["live_device_bytes"] = live->deviceBytes();
+    }
     json["frame_ms"] = drawn->frameMs.empty() ? Json(nullptr) : Json(median(drawn->frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : drawn->passes) json["passes_ms"][pass] = median(drawn->passMs.at(pass));

@@ -1,7 +1,6 @@
 #include "tools/live_light_options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
@@ -16,20 +15,6 @@ namespace sconce::tools
 
 namespace
 {
-
-/// Numbers between commas; nothing where some are none.
-std::optional<std::vector<float>> numbersIn(const std::string& text)
-{
-    std::vector<float> numbers;
-    for (const std::string& part : split(text, ','))
-    {
-        float number = 0.0f;
-        const auto read = std::from_chars(part.data(), part.data() + part.size(), number);
-        if (part.empty() || read.ec != std::errc() || read.ptr != part.data() + part.size() || !std::isfinite(number)) return std::nullopt;
-        numbers.push_back(number);
-    }
-    return numbers;
-}
 
 /// Of three numbers, or six; nothing where there is no direction, or light below 0.
 std::optional<SunPlace> placeIn(std::span<const float> numbers)
@@ -189,9 +174,8 @@ Result<std::vector<SunPlace>> sunPath(const std::filesystem::path& file, uint32_
     {
         while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.pop_back();
         if (text.empty()) continue;
-        auto numbers = numbersIn(text);
-        if (!numbers || numbers->size() != (coloured ? 7u : 4u))
-            return wrong(line, fmt::format("'{}' is not {} numbers", text, coloured ? 7 : 4));
+        auto numbers = parseNumbers(text, {coloured ? 7u : 4u});
+        if (!numbers) return wrong(line, fmt::format("'{}' is not {} numbers", text, coloured ? 7 : 4));
         if (!lines.empty() && !((*numbers)[0] > lines.back()[0])) return wrong(line, "its time is not after the line's before");
         lines.push_back(std::move(*numbers));
     }

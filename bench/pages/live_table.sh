@@ -3,7 +3,8 @@
 # of bench/results/live_light.json, and writes pictures under each sun, ours, the truth and the error, to $OUT/SCENE.png.
 # live_table.sh SCENE=COUNT X,Y,Z... with a scene's name or file and the ways that the suns' light travels. Environment: SCONCE=the command, built
 # when not given, SIZE=WxH of the pictures [320x180], SPP=paths a pixel [256], RESOLUTION=texels [256], LINKS=live links a texel [16],
-# EXPOSURE=factor of the pictures [1], OUT=folder [out/live], TIMES=1 to render again alone, for times.
+# EXPOSURE=factor of the pictures [1], SKY=R,G,B of all pictures and
+# bakes, which a scene without light of its own needs beside a sun, OUT=folder [out/live].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 entry=$1 out=${OUT:-out/live} size=${SIZE:-320x180} spp=${SPP:-256} resolution=${RESOLUTION:-256} links=${LINKS:-16} exposure=${EXPOSURE:-1}
@@ -13,22 +14,23 @@ scene=${entry%%=*} count=${entry#*=} name=$(basename "${entry%%=*}" | sed 's/\..
 sconce=${SCONCE:-build/release/tools/sconce}
 mkdir -p "$out"
 at=$out/$name
+sky=(${SKY:+--sky "$SKY"})
 compare() { "$sconce" compare "$1" "$2" --layer "$3" --same-surface --metric relmse,flip,mean --json; }
 
 [[ -f $at.probes.json ]] || "$sconce" place "$scene" --count "$count" -o "$at.probes.json" --quiet > /dev/null
 [[ -f $at.$links.sconce ]] ||
-    "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --live-links "$links" -o "$at.$links.sconce" --json --quiet > "$at.$links.bake.json"
+    "$sconce" bake "$scene" "${sky[@]}" --probes "$at.probes.json" --resolution "$resolution" --live-links "$links" -o "$at.$links.sconce" --json --quiet > "$at.$links.bake.json"
 pictures=() number=0
 for sun; do
     number=$((number + 1))
     view=$at.$number
-    [[ -f $view.ref.exr ]] || "$sconce" reference "$scene" --sun="$sun" --size "$size" --spp "$spp" --pixel-centre -o "$view.ref.exr" --quiet > /dev/null
+    [[ -f $view.ref.exr ]] || "$sconce" reference "$scene" "${sky[@]}" --sun="$sun" --size "$size" --spp "$spp" --pixel-centre -o "$view.ref.exr" --quiet > /dev/null
     [[ -f $view.fresh.exr ]] || {
-        "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" --sun="$sun" -o "$at.fresh.sconce" --json --quiet > "$view.fresh.bake.json"
-        "$sconce" render "$scene" --field "$at.fresh.sconce" --sun="$sun" --size "$size" -o "$view.fresh.exr" --quiet > /dev/null
+        "$sconce" bake "$scene" "${sky[@]}" --probes "$at.probes.json" --resolution "$resolution" --sun="$sun" -o "$at.fresh.sconce" --json --quiet > "$view.fresh.bake.json"
+        "$sconce" render "$scene" "${sky[@]}" --field "$at.fresh.sconce" --sun="$sun" --size "$size" -o "$view.fresh.exr" --quiet > /dev/null
         rm "$at.fresh.sconce"
     }
-    "$sconce" render "$scene" --field "$at.$links.sconce" --sun="$sun" --size "$size" -o "$view.relit.exr" --json --quiet > "$view.relit.json"
+    "$sconce" render "$scene" "${sky[@]}" --field "$at.$links.sconce" --sun="$sun" --size "$size" -o "$view.relit.exr" --json --quiet > "$view.relit.json"
     for way in relit fresh; do
         for layer in diffuse_indirect glossy_indirect beauty; do compare "$view.$way.exr" "$view.ref.exr" $layer > "$view.$way.$layer.json"; done
     done
@@ -47,6 +49,7 @@ for layer, called in (("diffuse_indirect", "diffuse"), ("glossy_indirect", "glos
         row |= {f"{way}_{called}_relmse": f"{of['relmse']:.4f}", f"{way}_{called}_flip": f"{of['flip']:.3f}", f"{way}_{called}_mean": f"{of['mean']:.3f}"}
     row[f"{called}_ratio"] = f"{relit['relmse'] / fresh['relmse']:.2f}"
 row["bake_s"], row["fresh_bake_s"] = f"{bake['seconds']:.0f}", f"{load(f'{view}.fresh.bake')['seconds']:.0f}"
+row["live_device_kib"] = f"{load(f'{view}.relit')['live_device_bytes'] / bake['probes'] / 1024:.0f}"
 row["live_kib"] = f"{bake['bytes']['live'] / bake['probes'] / 1024:.0f}"
 for key, ms in load(f"{view}.relit")["live_light_ms"].items(): row[f"ms_{key.split()[-1]}"] = f"{ms:.0f}"
 print(f'  "{name}_{view.split(".")[-1]}": {json.dumps(row)},', flush=True)

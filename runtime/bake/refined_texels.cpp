@@ -142,13 +142,13 @@ struct FineFilter
 
     uint32_t lightOf(const Texel& texel, uint32_t index) const
     {
-        constexpr float kLikeNoise = 2.0f, kAlike = 0.02f, kReachOfDistance = 0.12f, kLeastReach = 0.3f;
+        constexpr float kLikeNoise = 2.0f, kAlike = 0.02f;
         const int x = int(kFineSide * texel.at.x + index % kFineSide), y = int(kFineSide * texel.at.y + index / kFineSide);
         const TriangleGather::Point* point = pointAt(texel, x, y);
         if (!point) return 0;
         const uint32_t side = texels.field.surfaceSize * kFineSide;
         const auto own = texels.surfacePointOf(texel.probe, int(texel.at.z), x, y, side);
-        const float reach = std::max(kReachOfDistance * point->reach, kLeastReach * own.width),
+        const float reach = std::max(Texels::kReachOfDistance * point->reach, Texels::kLeastReach * own.width),
                     ownFirst = glm::dot(point->straight, kLuminance);
         glm::vec3 bounced(0.0f), straight(0.0f);
         float weights = 0.0f, straightWeights = 0.0f;

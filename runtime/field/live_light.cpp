@@ -125,27 +125,27 @@ void chooseProbes(LiveLight::State& state, const RelightBudget& budget)
     const auto needs = [&](uint32_t probe) { return state.probes[probe].bounces > 0; };
     const auto needing = uint32_t(std::ranges::count_if(state.probes, [](const auto& probe) { return probe.bounces > 0; }));
     const uint32_t byTurn = needing <= most ? most : most - most / 2;
+    for (auto& probe : state.probes) probe.chosen = false;
     for (uint32_t step = 0; step < count && state.turn.size() < byTurn; ++step)
     {
         const uint32_t probe = (state.next + step) % count;
-        if (needs(probe)) state.turn.push_back(probe);
+        if (!needs(probe)) continue;
+        state.turn.push_back(probe);
+        state.probes[probe].chosen = true;
     }
     if (!state.turn.empty()) state.next = (state.turn.back() + 1) % count;
     if (needing <= most) return;
-    const auto far = [&](uint32_t probe)
+    state.others.clear();
+    for (uint32_t probe = 0; probe < count; ++probe)
+        if (needs(probe) && !state.probes[probe].chosen) state.others.push_back(probe);
+    const auto nearer = [&](uint32_t a, uint32_t b)
     {
-        const vec3 away = state.probes[probe].centre - budget.eye;
-        return glm::dot(away, away);
+        const float farA = glm::distance(state.probes[a].centre, budget.eye), farB = glm::distance(state.probes[b].centre, budget.eye);
+        return farA < farB || (farA == farB && a < b);
     };
-    while (state.turn.size() < most)
-    {
-        uint32_t nearest = gpu::kNoProbe;
-        for (uint32_t probe = 0; probe < count; ++probe)
-            if (needs(probe) && std::ranges::find(state.turn, probe) == state.turn.end() &&
-                (nearest == gpu::kNoProbe || far(probe) < far(nearest)))
-                nearest = probe;
-        state.turn.push_back(nearest);
-    }
+    const auto end = state.others.begin() + std::ptrdiff_t(most - state.turn.size());
+    std::ranges::nth_element(state.others, end, nearer);
+    state.turn.insert(state.turn.end(), state.others.begin(), end);
 }
 
 /// Whether a probe sees anything within a light's range.
@@ -214,6 +214,7 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
     const size_t probes = data.probes.size(), texels = live.texels.size();
     for (const gpu::ProbeHeader& probe : data.probes) made.probes.push_back({data.info.origin + data.info.scale * probe.centre});
     made.turn.reserve(probes);
+    made.others.reserve(probes);
     made.dark.reserve(probes);
     made.copies.reserve(probes);
     made.packed.reserve(kMostLiveLights);

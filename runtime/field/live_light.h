@@ -18,6 +18,7 @@ struct LiveLight::State
         vec3 centre;          // world
         bool direct = true;   // light straight from lights is not of these lights
         uint32_t bounces = 0; // until its light is settled
+        bool chosen = false;  // for the record in the making
     };
     std::shared_ptr<Gpu> gpu;
     LightField field;
@@ -31,6 +32,7 @@ struct LiveLight::State
     Buffer direct, bounced, tilts, sent, sentNext, incident, surface, irradiance, prefiltered;
     Pipeline directPass, bouncePass, filterPass, placePass, finePass, mapPass, lobePass;
     bool moved = false;               // lights since the last record
+    std::vector<uint32_t> others;     // that need light and wait; reserved
     std::vector<uint32_t> turn, dark; // of a record: probes that are lit, and of them those whose direct light is made; reserved
     std::vector<VkBufferCopy> copies; // reserved
     uint64_t bytes = 0;

@@ -16,8 +16,7 @@ SCONCE_FN vec3 liveAlbedoOf(uint probe, int face, int x, int y)
 {
     uint side = field.faceSize / 2u;
     uint index = ((probe * 6u + uint(face)) * side + uint(y)) * side + uint(x);
-    uint bits = albedoWord(index / 2u) >> (16u * (index & 1u));
-    return vec3(real(bits & 31u) / real(31.0), real((bits >> 5) & 63u) / real(63.0), real((bits >> 11) & 31u) / real(31.0));
+    return unpackAlbedo(albedoWord(index / 2u) >> (16u * (index & 1u)));
 }
 
 /// Bilinear.
