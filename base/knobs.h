@@ -313,6 +313,7 @@ inline constexpr Knob<uint32_t> liveLinks{
             "spots can move afterwards; 0: they stay",
     .buys = "lights that move (LiveLight, relight --sun, render --sun-path); a bake more, and about 75 KiB a probe and link",
     .readme = true};
+inline constexpr uint32_t kCapturedLinks = 16; // liveLinks of `sconce capture`, where none are asked for
 inline constexpr uint32_t kLampTexels[] = {0, 512, 1024, 2048, 4096, 8192};
 inline constexpr Knob<uint32_t> lampTexels{
     .name = "lampTexels",

@@ -104,9 +104,10 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.converged = desc.converged;
     settings.rays = desc.rays;
     settings.liveLinks = desc.liveLinks;
+    settings.lit = desc.lit;
     settings.take(*plan);
     BakeReport report;
-    const auto field = desc.groups.empty() && desc.liveLinks == 0
+    const auto field = desc.groups.empty() && desc.liveLinks == 0 && desc.lit
                            ? bakeLightField(device.gpu().host, capped, probes, settings, progress, report)
                            : bakeLightGroups(device.gpu().host, capped, probes, settings, desc.groups, progress, report);
     if (!field) return field.error();

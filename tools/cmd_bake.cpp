@@ -1,4 +1,4 @@
-// sconce bake: the light field of a scene at given probes.
+// sconce bake and capture: the light field of a scene at given probes, lit or not.
 #include <iostream>
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ int runBake(const BakeOptions& options, const Context& context)
         if (!found) return fail(found.error());
         settings.light = &light.emplace(std::move(*found));
     }
-    const bool apart = (!groups->empty() && options.dims.empty()) || settings.liveLinks > 0;
+    const bool apart = (!groups->empty() && options.dims.empty()) || settings.liveLinks > 0 || !settings.lit;
     Result<FieldData> field =
         !apart ? bakeLightField(device->host(), *scene, positions, settings, consoleProgress(context), report)
                : bakeLightGroups(device->host(), *scene, positions, settings,
@@ -96,6 +96,7 @@ int runBake(const BakeOptions& options, const Context& context)
                                        : "")
                   << "\n";
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
+    const double lightMs = 1e3 * (report.gatherSeconds + report.bounceSeconds) / double(positions.size());
     if (context.json)
     {
         Json json = fieldJson(*field);
@@ -108,6 +109,8 @@ int runBake(const BakeOptions& options, const Context& context)
         json["stage_seconds"] = {{"scene", report.sceneSeconds},    {"probes", report.probeSeconds},
                                  {"octree", report.octreeSeconds},  {"gather", report.gatherSeconds},
                                  {"bounces", report.bounceSeconds}, {"prefilter", report.prefilterSeconds}};
+        json["gather_rays"] = report.gatherRays;
+        json["light_ms_a_probe"] = lightMs;
         json["octree_on_device"] = report.octreeOnDevice;
         addCost(json, watch);
         print(json);
@@ -117,10 +120,44 @@ int runBake(const BakeOptions& options, const Context& context)
         printField(*field, options.output);
         std::cout << "light at the probes, W/(m^2 sr): direct " << report.energy.front();
         for (size_t b = 1; b < report.energy.size(); ++b) std::cout << ", bounce " << b << " adds " << report.energy[b];
+        std::cout << fmt::format("\nlight: {:.1f} ms a probe", lightMs);
+        if (report.gatherRays > 0) std::cout << fmt::format(", {:.1f} million rays to triangles", double(report.gatherRays) / 1e6);
         std::cout << "\n";
         std::cout << watch.seconds() << " s, " << peakRssMb() << " MB of host memory, on " << device->name() << std::endl;
     }
     return exitOk;
+}
+
+/// What bake and capture have in common.
+void addOptions(CLI::App* bake, BakeOptions& options)
+{
+    BakeSettings& settings = options.settings;
+    options.scene.add(bake);
+    bake->add_option("--probes", options.probes, "probes.json of `sconce place` (required)")->required()->type_name("FILE");
+    bake->add_option("-o,--output", options.output, ".sconce file to write (required)")->required()->type_name("FILE");
+    addKnob(bake, "--resolution", settings.resolution, knobs::resolution, "TEXELS");
+    addKnob(bake, "--bounces", settings.bounces, knobs::bounces);
+    addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
+    addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
+    addKnob(bake, "--surface-refined", settings.surfaceRefined, knobs::surfaceRefined, "SHARE");
+    addKnob(bake, "--lamp-texels", settings.lampTexels, knobs::lampTexels, "TEXELS");
+    addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
+    addKnob(bake, "--gather", options.gather, knobs::gather);
+    addChoice(bake, "--chart", settings.chart, knobs::chart);
+    addGroups(
+        bake, options.groups,
+        "Lights that can be switched, dimmed and coloured later (`render --dim`, `relight`, LightGroups), each for a bake more and all "
+        "light of the file again");
+    addKnob(bake, "--memory", options.memoryMb, knobs::deviceMebibytes, "MIB");
+    bake->add_option(
+            "--effects", options.effects,
+            described("auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them; -NAME takes one "
+                      "away: auto,-sun bakes no sunlight. Without glossy and mirror the file holds no radiance for traced rays: "
+                      "half of its size",
+                      options.effects))
+        ->type_name("auto|all|none|LIST");
+    addDevice(bake, options.device);
+    options.quality.add(bake);
 }
 
 } // namespace
@@ -129,36 +166,19 @@ void addBakeCommand(CLI::App& app, Context& context)
 {
     CLI::App* bake = addCommand(app, context, "bake", "Bakes the light field of a scene at given probes");
     auto options = std::make_shared<BakeOptions>();
-    BakeSettings& settings = options->settings;
-    options->scene.add(bake);
-    bake->add_option("--probes", options->probes, "probes.json of `sconce place` (required)")->required()->type_name("FILE");
-    bake->add_option("-o,--output", options->output, ".sconce file to write (required)")->required()->type_name("FILE");
-    addKnob(bake, "--resolution", settings.resolution, knobs::resolution, "TEXELS");
-    addKnob(bake, "--bounces", settings.bounces, knobs::bounces);
-    addKnob(bake, "--converged", settings.converged, knobs::converged, "SHARE");
-    addKnob(bake, "--surface-texels", settings.surfaceTexels, knobs::surfaceTexels, "TEXELS");
-    addKnob(bake, "--surface-refined", settings.surfaceRefined, knobs::surfaceRefined, "SHARE");
-    addKnob(bake, "--lamp-texels", settings.lampTexels, knobs::lampTexels, "TEXELS");
-    addKnob(bake, "--live-links", settings.liveLinks, knobs::liveLinks);
-    addKnob(bake, "--surface-rays", settings.surfaceRays, knobs::surfaceRays);
-    addKnob(bake, "--gather", options->gather, knobs::gather);
-    addChoice(bake, "--chart", settings.chart, knobs::chart);
-    addGroups(
-        bake, options->groups,
-        "Lights that can be switched, dimmed and coloured later (`render --dim`, `relight`, LightGroups), each for a bake more and all "
-        "light of the file again");
+    addOptions(bake, *options);
+    addKnob(bake, "--live-links", options->settings.liveLinks, knobs::liveLinks);
     addDims(bake, options->dims, "; the scene is baked in that light, without groups");
-    addKnob(bake, "--memory", options->memoryMb, knobs::deviceMebibytes, "MIB");
-    bake->add_option(
-            "--effects", options->effects,
-            described("auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them; -NAME takes one "
-                      "away: auto,-sun bakes no sunlight. Without glossy and mirror the file holds no radiance for traced rays: "
-                      "half of its size",
-                      options->effects))
-        ->type_name("auto|all|none|LIST");
-    addDevice(bake, options->device);
-    options->quality.add(bake);
     onChosen(bake, context, options, runBake);
+    CLI::App* capture = addCommand(app, context, "capture",
+                                   "A scene's geometry and material at given probes, without light: `relight` and `render` light it");
+    options = std::make_shared<BakeOptions>();
+    addOptions(capture, *options);
+    options->settings.lit = false;
+    options->settings.liveLinks = knobs::kCapturedLinks;
+    addKnob(capture, "--live-links", options->settings.liveLinks, knobs::liveLinks)
+        ->description(described(wordsOf(knobs::liveLinks), knobText(knobs::kCapturedLinks), rangeText(knobs::liveLinks)));
+    onChosen(capture, context, options, runBake);
 }
 
 } // namespace sconce::tools

@@ -20,6 +20,7 @@ struct RelightOptions
     std::string field, output, device;
     std::vector<std::string> dims;
     LiveLightOptions live;
+    bool keep = false;
 };
 
 /// A field in other light, groups and all.
@@ -48,11 +49,14 @@ int runRelight(const RelightOptions& options, const Context& context)
     if (!field) return fail(field.error());
     const Result<std::vector<vec3>> weights = weightsOf(options.dims, groupsOf(field->groups));
     if (!weights) return fail(weights.error());
-    if (options.dims.empty() && !options.live.any())
+    if (options.dims.empty() && !options.live.any() && field->live.lit)
         return fail(ErrorCode::badArgument, "There is nothing to change; give --dim, --sun or --lights.");
     if (Status status = relit(*field, options, *weights); !status) return fail(status.error());
-    field->groups.clear();
-    field->live = {};
+    if (!options.keep)
+    {
+        field->groups.clear();
+        field->live = {};
+    }
     field->fileVersion = 0; // it isn't that file
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     if (!context.json)
@@ -74,10 +78,14 @@ void addRelightCommand(CLI::App& app, Context& context)
     CLI::App* relight =
         addCommand(app, context, "relight", "A light field in other light: of its light groups, and of lights that may move");
     auto options = std::make_shared<RelightOptions>();
-    relight->add_option("FIELD", options->field, ".sconce file of `sconce bake --group` or `--live-links`")->required()->type_name("");
-    relight->add_option("-o,--output", options->output, ".sconce file to write, whose light then stays (required)")
+    relight
+        ->add_option("FIELD", options->field,
+                     ".sconce file of `sconce capture`, which takes the scene's lights if told nothing else, or of `bake --group` or "
+                     "`--live-links`")
         ->required()
-        ->type_name("FILE");
+        ->type_name("");
+    relight->add_option("-o,--output", options->output, ".sconce file to write (required)")->required()->type_name("FILE");
+    relight->add_flag("--keep", options->keep, "Keeps groups and links, so that its light still changes; else it stays, in a smaller file");
     addDims(relight, options->dims);
     options->live.add(relight);
     addDevice(relight, options->device);

@@ -66,6 +66,7 @@ Json fieldJson(const FieldData& field)
     for (const LightGroup& group : field.groups)
         json["light_groups"].push_back({{"name", group.which.name}, {"members", group.which.members}});
     json["live_links"] = field.live.links;
+    json["lit"] = field.live.lit;
     json["live_lights"] = Json::array();
     for (const Light& light : field.live.lights) json["live_lights"].push_back(light.name);
     json["octree"] = {{"leaves", field.octree.leaves},
@@ -112,8 +113,9 @@ void printField(const FieldData& field, const std::string& file)
         std::cout << "\n";
     }
     if (field.live.links > 0)
-        std::cout << fmt::format("live: {} links a texel, {}, {:.2f} MB a probe; {} lights\n", field.live.links, megabytes(bytes.live),
-                                 double(bytes.live) / 1e6 / double(info.probeCount), field.live.lights.size());
+        std::cout << fmt::format("live: {} links a texel, {}, {:.2f} MB a probe; {} lights{}\n", field.live.links, megabytes(bytes.live),
+                                 double(bytes.live) / 1e6 / double(info.probeCount), field.live.lights.size(),
+                                 field.live.lit ? "" : ", which don't shine yet: captured, not lit");
     std::cout << "format version " << (field.fileVersion > 0 ? field.fileVersion : fileVersionOf(field)) << "\n"
               << "effects:";
     for (const std::string& effect : field.effects) std::cout << " " << effect;

@@ -20,14 +20,15 @@ NAMES = {"ours": "Sconce", "ours-grid": "Sconce's tracer, grid", "b0": "B0", "b0
 # Label, asked: from the analysis (what is held equal, error, cost, ratio), or of the default points, at equal probes (a figure).
 TARGETS = [
     ("equal glossy relMSE: frame time", "0.25", ("glossy.relmse", "frame_ms", "time")),
-    ("as few wrong rays: trace time", "0.25", ("wrong_rays", "trace_ms", "trace")),
-    ("equal probes: wrong rays", "0.25", "wrong"),
+    ("as few wrong rays, 1 %: trace time", "0.25", ("wrong_rays", "trace_ms", "trace")),
+    ("equal probes: wrong rays, 1 %", "0.25", "wrong"),
+    ("equal probes: wrong rays, 0.2 %", "0.25", "wrong_02"),
     ("equal probes: glossy relMSE", "0.5", "glossy_relmse"),
     ("equal probes: diffuse relMSE", "0.5", "diffuse_relmse"),
     ("equal glossy relMSE: memory", "0.5", ("glossy.relmse", "bytes", "memory")),
 ]
 NAMED = {"cornell_glossy.glb": "cornell_mcguire glossy", "zdm2.glb": "map_zdm2"}  # files whose names say too little
-SHORT = {"ours-grid": "own, grid", "b0plus-octree": "B0+, lists", "wang": "W'", "ddgi-placed": "DDGI, own probes"}  # in targets
+SHORT = {"ours-grid": "own", "b0plus-octree": "B0+, lists", "wang": "W'", "ddgi-placed": "DDGI, own probes"}  # in targets
 PATHS = ("path tracer", "path tracer filtered")
 
 
@@ -42,18 +43,29 @@ def of(point, path, scale=1.0, digits=4):
     return "" if point is None else f"{scale * point:.{digits}f}"
 
 
+def megabytes(point):
+    """Volumes have a few KB."""
+    text = of(point, "bytes.total", 1e-6, 3)
+    return text if not text or float(text) < 1.0 else of(point, "bytes.total", 1e-6, 1)
+
+
 def figures(point):
     rays = point.get("rays", {})
     wrong = {f"wrong_{end}": {"x": 1.0 - rays[f"right_{end}"]} if rays else {} for end in ("1", "02")}
     row = {"probes": str(point.get("probes", "")), "wrong": of(wrong["wrong_1"], "x", 100, 2), "wrong_02": of(wrong["wrong_02"], "x", 100, 2),
            "unresolved": of(point, "rays.unresolved", 100, 2), "reads": of(point, "rays.reads_mean", 1, 1), "trace_ms": of(point, "trace_ms.median", 1, 1),
-           "frame_ms": of(point, "frame_ms.median", 1, 0), "mb": of(point, "bytes.total", 1e-6, 1), "bake_s": of(point, "bake_s", 1, 0)}
+           "frame_ms": of(point, "frame_ms.median", 1, 0), "mb": megabytes(point), "bake_s": of(point, "bake_s", 1, 0)}
     for term in ("beauty", "diffuse", "glossy"):
-        row |= {f"{term}_relmse": of(point, f"error.{term}.relmse"), f"{term}_flip": of(point, f"error.{term}.flip", 1, 3),
-                f"{term}_mean": of(point, f"error.{term}.mean", 1, 3)}
+        row |= {f"{term}_relmse": of(point, f"error.{term}.relmse"), f"{term}_unsure": of(point, f"error.{term}.relmse_unsure", 1, 5),
+                f"{term}_flip": of(point, f"error.{term}.flip", 1, 3), f"{term}_mean": of(point, f"error.{term}.mean", 1, 3)}
     if point.get("wrong"):
         row["wrong_picture"] = point["wrong"]
     return row
+
+
+def grid_shape(scene, point):
+    """As 6x3x3; empty where its probes are no grid."""
+    return "x".join(str(count) for count in scene.get("probe_sets", {}).get(point.get("probe_set"), {}).get("grid", []))
 
 
 def label(point):
@@ -114,16 +126,23 @@ def targets(scenes):
     return rows
 
 
+def least_to_most(values):
+    least, most = (f"{x:.0f}" if x >= 9.95 else f"{x:.2g}" for x in (min(values), max(values)))
+    return least if least == most else f"{least} to {most}"
+
+
 def summary(rows, scenes):
-    """Over the scenes, the least and the most of what a method's figures are times ours."""
+    """Over the scenes, the least and the most of what a method's figures are times ours, and KiB a probe."""
     found = {}
     for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64"):
-        for figure in ("wrong", "diffuse_relmse", "beauty_flip", "frame_ms"):
+        for figure in ("wrong", "wrong_02", "diffuse_relmse", "beauty_flip", "frame_ms"):
             pairs = [(rows[f"{slug(name)}__{method}"][figure], rows[f"{slug(name)}__ours"][figure]) for name in scenes]
             times = [float(theirs) / float(ours) for theirs, ours in pairs if theirs and ours]
             if times:
-                least, most = (f"{x:.0f}" if x >= 9.95 else f"{x:.2g}" for x in (min(times), max(times)))
-                found[f"{method}_{figure}"] = least if least == most else f"{least} to {most}"
+                found[f"{method}_{figure}"] = least_to_most(times)
+    for method in ("ours", "ddgi"):
+        own = [rows[f"{slug(name)}__{method}"] for name in scenes]
+        found[f"{method}_kib"] = least_to_most([1e6 / 1024 * float(row["mb"]) / int(row["probes"]) for row in own])
     return {"all": {"label": "theirs over ours, over the scenes"} | found}
 
 
@@ -134,9 +153,10 @@ def methods(files):
         for point in scene["points"]:
             if point["knob"] == "default" or (point["knob"] == "paths" and point["value"] in ("1", "4", "16", "64")):
                 key = slug(point["method"]) + ("" if point["knob"] == "default" else f"_{point['value']}")
-                rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point)
+                rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point) | {"grid_shape": grid_shape(scene, point)}
     rows |= summary(rows, scenes)
     notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
+             "..._unsure: the standard error of relMSE by the reference's noise",
              "times are CPU time of all threads divided by the cores; nothing else running"] + [references(name, scene) for name, scene in scenes.items()]
     write("scene_methods.json", "Every method at its default in one run", commands, notes, rows)
     write("scene_targets.json", "Targets: ours over the hardest opponent, which is named", commands, ["a ratio above the asked one is a missed target"],
@@ -150,11 +170,12 @@ def over(value, base):
         return ""
 
 
-PRICED = ("wrong", "reads", "trace_ms", "frame_ms", "mb", "glossy_relmse", "diffuse_relmse", "beauty_flip", "bake_s")
+PRICED = ("wrong", "wrong_02", "reads", "trace_ms", "frame_ms", "mb", "glossy_relmse", "diffuse_relmse", "beauty_flip", "bake_s")
 
 
 def knobs(files):
-    """A row a value, and a row a knob, whose cells list its values'."""
+    """A row a value, and a row a knob, whose cells list its values', one where all are alike."""
+    listed = lambda texts: texts[0] if len(set(texts)) == 1 else ", ".join(texts)
     scenes, commands = scenes_of(files)
     name, scene = next(iter(scenes.items()))
     ours = [point for point in scene["points"] if point["method"] == "ours" and "error" in point]
@@ -169,9 +190,9 @@ def knobs(files):
             rows[f"{slug(point['knob'])}_{slug(point['value'])}"] = row
             lists.setdefault(point["knob"], []).append(row)
     for knob, values in lists.items():
-        rows[slug(knob)] = {"label": knob} | {key: ", ".join(row[key] for row in values) for key in values[0] if key != "label"}
+        rows[slug(knob)] = {"label": knob} | {key: listed([row[key] for row in values]) for key in values[0] if key != "label"}
     write("knobs.json", f"Our knobs on {name}, each alone against the default", commands,
-          ["`_times`: over the default's; a knob's row lists its values'", references(name, scene)], rows)
+          ["`_times`: over the default's; a knob's row lists its values', one where all are alike", references(name, scene)], rows)
 
 
 KNOBS = {"opinion": "no second opinion (`opinion:0`)", "farBounds": "far bounds read (`farBounds:1`)", "ranked:2": "two ranked probes (`ranked:2`)",
@@ -180,9 +201,10 @@ KNOBS = {"opinion": "no second opinion (`opinion:0`)", "farBounds": "far bounds 
 
 def traced(entry, yardstick):
     """A tracer's row of a race; times over the yardstick's."""
-    percent = lambda key: f"{100 * entry[key]:.2f}" if key in entry else "100" if key.startswith("right") else ""
+    percent = lambda key: f"{100 * entry[key]:.2f}" if key in entry else "100" if key in ("right_1", "right_02") else ""
     reads = entry.get("distance_reads", {})
-    row = {key: percent(key) for key in ("right_1", "right_02", "right_1_unsure", "right_02_unsure", "false", "leak", "unresolved")}
+    row = {key: percent(key) for key in ("right_1", "right_02", "right_1_unsure", "right_02_unsure", "assumed_right_1", "assumed_right_02", "false",
+                                             "leak", "unresolved")}
     row |= {"reads_mean": of(entry, "distance_reads.mean", 1, 1), "reads_95": str(reads.get("p95", "")), "reads_max": str(reads.get("max", "")),
             "index_reads": of(entry, "index_reads_mean", 1, 1), "probes": str(entry.get("probes", "")), "mib_traced": of(entry, "trace_mib", 1, 2),
             "mib_with_radiance": f"{entry['trace_mib'] + entry['radiance_mib']:.2f}" if "trace_mib" in entry else ""}
@@ -210,7 +232,8 @@ def tracer_targets(rows):
 
 def rays(arguments):
     notes = ["200,000 glossy rays (GGX alpha 0.1 to 0.3) from 64 viewpoints: the cameras and points of the reachable space; truth by Embree",
-             "right: within that share of the scene's diagonal of the truth; shares in %, unsure: standard errors by viewpoint",
+             "right: within that share of the scene's diagonal of the truth; shares in %, unsure: standard errors by viewpoint; assumed_right: were an"
+             " unresolved ray a hit where the tracer lost sight (McGuire et al. 2017, section 4)",
              "cube faces of 208 and octahedral maps of 512 texels: equal memory; W' 512; grids in the better of two poses, plain and --fit-grid",
              "ratio: trace time of 50,000 rays over that of B0+ with the same probes and lists, in picture order and shuffled; nothing else running"]
     entries = json.loads(Path(arguments[0]).read_text())

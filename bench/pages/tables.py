@@ -12,7 +12,9 @@ A result file holds what was printed, to the digit: `what`, `command`, `commit`,
 keys. A .csv has the same head as lines `# key: value`. A row of findings.json names its own command and commit.
 
 A view names columns (header, template) and rows. `{key}` is the row's value; `{part.key}` that of the row `ROW__part`; `{@}` the row's
-name in the view. A cell whose values are all empty is empty. `"caption": false`: no line below it. A third entry `{"bold_up_to": key}` marks cells that reach a target.
+name in the view. A cell whose values are all empty is empty. `"caption": false`: no line below it. A column's third entry may have
+`"bold_up_to"`, by which cells are marked that reach a target: a key of the row, or `ROW.KEY` of findings.json, there also a range,
+`LOW to HIGH`; and `"optional": true`: left out where no row has a value. Groups named in a view's `"optional"` may be empty, and are left out.
 """
 import argparse
 import csv
@@ -104,7 +106,14 @@ def leading(text):
     return float(match[0]) if match else float("inf")
 
 
-def table_lines(result, view):
+def reaches(cell, target):
+    """Whether a cell's first number is at most the target, or within it."""
+    low, _, high = target.rpartition(" to ")
+    value = leading(cell)
+    return value != float("inf") and leading(high) != float("inf") and (not low or leading(low) <= value) and value <= leading(high)
+
+
+def table_lines(result, view, results):
     rows = result["rows"]
     names = view.get("rows", list(rows))
     names = dict(zip(names, names)) if isinstance(names, list) else names
@@ -113,13 +122,15 @@ def table_lines(result, view):
         if key not in rows and not any(other.startswith(key + "__") for other in rows):
             raise KeyError(f"no row '{key}'")
         cells = []
-        for column in view["columns"]:
-            cell = fill(column[1], rows, key, name)
-            if len(column) > 2 and leading(cell) <= leading(rows[key].get(column[2]["bold_up_to"], "")) != float("inf"):
+        for _, template, *more in view["columns"]:
+            cell = fill(template, rows, key, name)
+            bound = more[0].get("bold_up_to") if more else None
+            if bound and reaches(cell, results.value("findings", *bound.split(".")) if "." in bound else rows[key].get(bound, "")):
                 cell = f"**{cell}**"
             cells.append(cell)
         lines.append(cells)
-    return [column[0] for column in view["columns"]], lines
+    kept = [i for i, (_, _, *more) in enumerate(view["columns"]) if not (more and more[0].get("optional")) or any(cells[i] for cells in lines)]
+    return [view["columns"][i][0] for i in kept], [[cells[i] for i in kept] for cells in lines]
 
 
 def group_lines(result, view):
@@ -134,6 +145,8 @@ def group_lines(result, view):
         groups[name].append(row)
     lines = []
     for name, members in groups.items():
+        if not members and name in view.get("optional", []):
+            continue
         if not members:
             raise KeyError(f"group '{name}' is empty")
 
@@ -152,7 +165,7 @@ def render(results, views, file, name, depth):
     """The text between a table's markers."""
     result = results.file(file)
     view = views[file][name]
-    header, lines = group_lines(result, view) if "groups" in view else table_lines(result, view)
+    header, lines = group_lines(result, view) if "groups" in view else table_lines(result, view, results)
     numbers = [all(re.match(r"[*\-\d]|$", cells[i]) for cells in lines) for i in range(len(header))]
     out = ["| " + " | ".join(header) + " |", "|" + "|".join("---:" if right else "---" for right in numbers) + "|"]
     out += ["| " + " | ".join(cells) + " |" for cells in lines]

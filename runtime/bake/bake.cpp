@@ -11,6 +11,7 @@
 #include "base/limits.h"
 #include "base/numbers.h"
 #include "base/parallel.h"
+#include "runtime/bake/counted_rays.h"
 #include "runtime/bake/host_memory.h"
 #include "runtime/bake/lamps.h"
 #include "runtime/bake/patches.h"
@@ -309,7 +310,10 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     const uint32_t shadowRays = std::min(settings.surfaceRays, gpu::kMostShadowRays);
     const bool live = settings.rays && settings.layout && settings.layout->liveLinks > 0 && settings.layout->live.links == 0;
     std::optional<TriangleGather> exact;
-    if (settings.rays) exact.emplace(*settings.rays, field, texels, scene.lights(), TriangleGather::Desc{settings.surfaceRays, shadowRays});
+    std::optional<CountedRays> counted;
+    if (settings.rays)
+        exact.emplace(counted.emplace(*settings.rays), field, texels, scene.lights(),
+                      TriangleGather::Desc{settings.surfaceRays, shadowRays});
     auto surfaces = SurfaceBaker::create(
         gpu, scene, *dark, texels,
         {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live});
@@ -349,7 +353,9 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     if (auto status = surfaces->bounce(); !status) return status;
     if (auto status = surfaces->read(field.surfaceLight); !status) return status;
     if (auto status = cancelledIfAsked("refined texels", 0, 1); !status) return status;
-    if (auto status = surfaces->refine(field, settings.surfaceRefined, settings.layout); !status || !live) return status;
+    if (auto status = surfaces->refine(field, settings.surfaceRefined, settings.layout); !status) return status;
+    if (counted) spent.gatherRays = counted->count();
+    if (!live) return success();
     settings.layout->live = surfaces->transport(field, settings.layout->liveLinks, *settings.layout->hidden);
     settings.layout->live.albedo = coarserAlbedo();
     return success();
@@ -394,12 +400,20 @@ Status Bake::lentLight(Gpu& gpu, ProbeBaker& baker, const FieldData& light, Bake
     return success();
 }
 
+void dropSurfaceLight(FieldData& field)
+{
+    field.surfaceLight = {};
+    field.info.surfaceSize = field.info.surfaceDirections = field.info.refinedTexels = field.info.hidden = 0;
+    field.info.cellShift = 0;
+}
+
 } // namespace
 
 void BakeSettings::take(const EffectPlan& plan, bool tracedDiffuse)
 {
     radiance = plan.needsRadiance() || (tracedDiffuse && plan.on("diffuse"));
     prefiltered = plan.needsPrefiltered() || !radiance; // a traced ray's colour, when someone asks for one
+    readsSurfaces = plan.on("diffuse") || plan.on("rough");
     for (const PlannedEffect& effect : plan.effects)
         if (effect.on) effects.push_back(effect.name);
 }
@@ -516,6 +530,8 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         if (info.surfaceSize == 0) makePatches(bake.field, bake.surfaces, bake.emitted);
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};
+        // Where no frame reads it, it was made for what surfaces send to mirrors alone.
+        if (!settings.readsSurfaces && !settings.layout && bake.field.lamps.empty()) dropSurfaceLight(bake.field);
         spent.prefilterSeconds = watch.lap();
         spent.peakDeviceBytes = (*gpu)->memory().peak();
     }

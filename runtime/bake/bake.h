@@ -30,10 +30,12 @@ struct BakeSettings
     uint32_t lampTexels = knobs::lampTexels.value;       // a side of a lamp's shadow map; 0, or without `rays`: emitters are no lamps
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
     uint32_t liveLinks = knobs::liveLinks.value;         // of each texel, so that lights may move; bakeLightGroups() makes them; 0: none
+    bool lit = true;                                     // false: geometry and material alone, with live links; relightField() lights it
     const ExactRays* rays = nullptr;  // to the triangles of the scene that is baked, that gather it; null: through the field
     DeviceSceneDesc scene;            // textures and lights
     std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
     bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
+    bool readsSurfaces = true;        // keep surface light, which diffuse light and rough reflections are read from
     bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid; // set when the probes are a uniform one
@@ -59,6 +61,7 @@ struct BakeReport
     bool octreeOnDevice = false; // else the maps didn't fit the device's memory and the host built it: the same bytes, later
     double gatherSeconds = 0.0;  // rays of the surface light
     double bounceSeconds = 0.0;
+    uint64_t gatherRays = 0; // to triangles, that surface light took: of texels, cells and finer texels, on by lobes, and to lights
     double prefilterSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;
     /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
@@ -69,9 +72,10 @@ struct BakeReport
     uint32_t tight = 0;  // of them, those that found no place, between surfaces: they see through one of them
 };
 
-/// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then by its own irradiance, bounce
-/// by bounce. A probe's maps before the first bounce don't depend on the other probes. Same input, same driver: same bytes.
-/// Specular reflection is baked as diffuse reflection of the same strength: a probe's texel holds one radiance for all directions.
+/// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then, bounce by bounce, by the light
+/// gathered at the surfaces that its texels show (without surface texels: by the probes' irradiance). A probe's maps before the first bounce
+/// don't depend on the other probes. Same input, same driver: same bytes.
+/// What rays meet is as bright to all sides: a probe's texel holds one radiance for all directions.
 /// @param probes  world, metres; at least one, at most 65,535. One that stands on a surface, or nearer to it than 2e-4 of the diagonal, is
 /// moved
 ///                off it (runtime/bake/probe_clearance.h) where the probes are no grid

@@ -21,6 +21,7 @@ void addSeconds(BakeReport& all, const BakeReport& one)
     for (double BakeReport::*part : {&BakeReport::sceneSeconds, &BakeReport::probeSeconds, &BakeReport::octreeSeconds,
                                      &BakeReport::gatherSeconds, &BakeReport::bounceSeconds, &BakeReport::prefilterSeconds})
         all.*part += one.*part;
+    all.gatherRays += one.gatherRays;
     all.peakDeviceBytes = std::max(all.peakDeviceBytes, one.peakDeviceBytes);
 }
 
@@ -81,7 +82,8 @@ std::string groupFault(const BakeSettings& settings)
 {
     if (settings.chart != gpu::kChartCube || settings.surfaceTexels == 0 || settings.light)
         return "light groups are kept of surface light on cube faces; give surface texels, and the chart cube";
-    if (settings.liveLinks == 0) return {};
+    if (settings.liveLinks == 0)
+        return settings.lit ? "" : "geometry and material alone are light's links; give live links, or let the field be lit";
     if (!settings.rays) return "live links are found by rays to triangles; give rays, or gather by triangles";
     if (settings.liveLinks > settings.surfaceRays)
         return fmt::format("there are {} live links of {} rays that gather surface light; give no more links than rays", settings.liveLinks,
@@ -142,7 +144,12 @@ Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, st
     for (const uint32_t light : live) lights.push_back(scene.lights[light]);
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
-    if (auto status = relightField(**gpu, *field, lights, weights); !status) return status.error();
+    const auto relit = settings.lit ? relightField(**gpu, *field, lights, weights)
+                                    : relightField(**gpu, *field, {}, std::vector<vec3>(groups.size(), vec3(0.0f)));
+    if (!relit) return relit.error();
+    if (settings.lit) return field;
+    field->live.lights = std::move(lights); // which whoever lights it takes if told nothing else
+    field->live.lit = false;
     return field;
 }
 

@@ -40,6 +40,7 @@ struct LiveTransport
     std::vector<glm::vec3> tints;       // gpu::kTints colours of metals that links name
     std::vector<uint32_t> albedo;       // [probe][face][y][x], half the radiance's texels a side, 5:6:5, two to a word
     std::vector<Light> lights;          // that the field's light is of, besides its groups'
+    bool lit = true;                    // false: the field has no light yet, and these lights are those of the scene
 };
 
 /// A baked light field in host memory: what a .sconce file holds. Layouts of the words: shaders/shared/light_field.h.

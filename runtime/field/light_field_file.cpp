@@ -410,7 +410,7 @@ std::string metaText(const FieldData& field)
         for (const vec3& radiance : group.lamps) one["lamps"].push_back(numbers(radiance));
         json["groups"].push_back(one);
     }
-    if (field.live.links > 0) json["live"]["links"] = field.live.links;
+    if (field.live.links > 0) json["live"] = {{"links", field.live.links}, {"lit", field.live.lit}};
     for (const Light& light : field.live.lights)
         json["live"]["lights"].push_back({{"name", light.name},
                                           {"type", uint32_t(light.type)},
@@ -464,6 +464,8 @@ bool applyLive(const nlohmann::json& json, LiveTransport& live)
 {
     if (!json.is_object() || !json.contains("links") || !json["links"].is_number_unsigned()) return false;
     live.links = uint32_t(std::min<uint64_t>(json["links"].get<uint64_t>(), UINT32_MAX));
+    if (json.contains("lit") && !json["lit"].is_boolean()) return false;
+    live.lit = json.value("lit", true);
     if (!json.contains("lights")) return true;
     if (!json["lights"].is_array() || json["lights"].size() > kMostLiveLights) return false;
     for (const nlohmann::json& one : json["lights"])

@@ -445,6 +445,7 @@ Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, s
     if (std::string fault = lightFault(lights); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
     if (auto status = mixGroups(field, weights); !status) return status;
     field.live.lights.assign(lights.begin(), lights.end());
+    field.live.lit = true;
     std::vector<uint32_t> incident(field.live.texels.size());
     {
         auto device = makeLightField(gpu, field);

@@ -25,12 +25,18 @@ std::string bytes(size_t count, const char* of)
 std::string costOf(std::string_view name)
 {
     const size_t radiance = radianceWordsPerProbe(gpu::kChartCube, 256) * sizeof(uint32_t);
+    const size_t surfaceLight =
+        bytesPerProbe(gpu::kChartCube, knobs::resolution.value, knobs::surfaceTexels.value, false, knobs::surfaceRefined.value) -
+        bytesPerProbe(gpu::kChartCube, knobs::resolution.value, 0, false, 0.0f) + 2 * gpu::kPatches * sizeof(uint32_t);
     if (name == "sun") return "A shadow map, and a look-up a pixel.";
     if (name == "punctual") return "Six shadow maps a light, and a look-up a light and pixel.";
-    if (name == "emitters" || name == "sky") return "Shadow maps of its samples, and 8 look-ups a diffuse pixel; the bake's light.";
+    if (name == "emitters")
+        return "Rays of the bake; in a frame a shadowed look-up a pixel for each that is kept as a lamp, and nothing for the others.";
+    if (name == "sky") return "Rays of the bake, nothing in a frame.";
     if (name == "diffuse")
-        return fmt::format("A pass over diffuse tiles of at most 4 probes a look-up, a filter, {}, {}.", bytes(2 * kImageBytes, "pixel"),
-                           bytes((kIrradianceWordsPerProbe + 2 * gpu::kPatches) * sizeof(uint32_t), "probe"));
+        return fmt::format("A pass over diffuse tiles of about 24 reads a look-up, one for 2x2 pixels where they are of one flat surface, "
+                           "{}, {}.",
+                           bytes(kImageBytes, "pixel"), bytes(surfaceLight, "probe"));
     if (name == "rough")
         return fmt::format("12 reads more a probe of the diffuse pass, {}, {}.", bytes(kImageBytes, "pixel"),
                            bytes(gpu::kPrefilteredWords * sizeof(uint32_t), "probe"));

@@ -121,7 +121,7 @@ SCONCE_FN bool b0Fine(SCONCE_INOUT(B0Ray) ray, vec2 entry, vec2 leave)
     for (int i = 0; i < 2 * b0LowFactor() + 4 && real(i) <= steps; ++i)
     {
         vec2 middle = entry + min((real(i) + real(0.5)) / max(steps, real(1e-6)), real(1.0)) * across;
-        vec3 vb = b0Direction(entry + (real(i) + real(1.0)) / max(steps, real(1e-6)) * across);
+        vec3 vb = b0Direction(entry + min((real(i) + real(1.0)) / max(steps, real(1e-6)), real(1.0)) * across);
         real rb = b0Radial(ray, vb);
         uint word = b0Fetch(ray, int(middle.x), int(middle.y));
         if (max(ra, rb) >= b0Distance(word))

@@ -68,6 +68,32 @@ class Tables(unittest.TestCase):
         line = self.change("docs/light.md", r"\| hall, 24 \|.*\n", "")
         self.expect_fault(f"docs/light.md:{line}: table surface_light.json main")
 
+    def test_optional_column_comes_with_its_rows(self):
+        self.change("bench/pages/views.json", r'(\["KiB a probe", )', r'["made up", "{made_up}", {"optional": true}], \1')
+        code, said = self.run_script("--check")
+        self.assertEqual(code, 0, said)
+        self.change("bench/results/surface_light.json", r'("label": "hall, 24")', r'\1, "made_up": "7.5"')
+        self.expect_fault("docs/light.md:", "table surface_light.json main", "| made up |", "| 7.5 |")
+
+    def test_optional_group_comes_with_its_rows(self):
+        self.change("bench/pages/views.json", r'("groups": \{)("light: none)', r'\1"made up": "^made up", \2')
+        self.expect_fault("docs/limits.md:", "table hard_cases.csv groups: \"group 'made up' is empty\"")
+        self.change("bench/pages/views.json", r'("optional": \[)("light at)', r'\1"made up", \2')
+        code, said = self.run_script("--check")
+        self.assertEqual(code, 0, said)
+        self.change("bench/results/hard_cases.csv", r"(case,inputs,worst,bound\n)", r"\1made up,10,1,2\n")
+        self.expect_fault("docs/limits.md:", "| made up | 1 | 0 | made up | 1 | 2 |")
+
+    def test_target_that_is_no_longer_reached(self):
+        self.change("bench/results/findings.json", r'("surface_asked": .*?"flip": ")[\d.]+', r"\g<1>0.0001")
+        self.change("bench/results/findings.json", r'("surface_asked": .*?"mean": ")[^"]+', r"\g<1>5 to 6")
+        line = self.change("docs/light.md", r"\| hall, 24 \|", "| hall, 24 |")
+        code, said = self.run_script("--check")
+        self.assertEqual(code, 1, said)
+        given = re.search(rf"docs/light\.md:{line}: .* the file gives '(.*)'", said)[1]
+        mean, flip = [cell.strip() for cell in given.split("|")][4:6]
+        self.assertNotIn("*", mean + flip)
+
     def test_number_in_prose_that_contradicts_its_file(self):
         line = self.change("docs/accuracy.md", r"(<!--=tess10m\.bake-->)[\d.]+", r"\g<1>0.09")
         self.expect_fault(f"docs/accuracy.md:{line}: findings:tess10m.bake: there stands '0.09', the file gives '199'")

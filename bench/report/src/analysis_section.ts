@@ -29,7 +29,7 @@ const kRatios: [string, string][] = [
     ["reads", "reads"],
     ["error", "error"],
     ["memory", "memory"],
-    ["wrong_rays", "wrong rays"],
+    ["wrong_rays", "wrong rays, 1 %"],
     ["probes", "probes"],
 ];
 const kPrices: [keyof Price, string, string][] = [

@@ -3,7 +3,7 @@ import { h } from "./dom";
 import { figures, withUnit } from "./figures";
 import { number, plain } from "./format";
 import { glyph, titleOf, type MethodStyle } from "./methods";
-import { imagesOf, isNumber } from "./results";
+import { gridShape, imagesOf, isNumber, type Scene } from "./results";
 import type { Store } from "./store";
 
 function block(title: string, rows: [string, string][]): HTMLElement | null {
@@ -14,7 +14,7 @@ function block(title: string, rows: [string, string][]): HTMLElement | null {
 }
 
 /** A box that shows the point that was picked, and follows the choice. */
-export function details(styles: Map<string, MethodStyle>, store: Store): HTMLElement {
+export function details(scene: Scene, styles: Map<string, MethodStyle>, store: Store): HTMLElement {
     const box = h("div", { class: "details", "aria-live": "polite" });
     const update = (): void => {
         const point = store.picked;
@@ -29,6 +29,8 @@ export function details(styles: Map<string, MethodStyle>, store: Store): HTMLEle
             return isNumber(time) ? [[name, `${number(time)} ms`]] : [];
         });
         const settings = Object.entries(point.settings ?? {}).map(([name, value]): [string, string] => [name, plain(value)]);
+        const shape = gridShape(scene.probe_sets?.[point.probe_set ?? ""]);
+        if (shape) settings.push(["grid", shape]);
         box.replaceChildren(
             h(
                 "div",

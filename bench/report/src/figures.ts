@@ -88,7 +88,7 @@ export const figures: Figure[] = [
     count("rays.reads_max", "texel reads a ray, most", "reads max", "lower"),
     count("rays.index_reads_mean", "octree reads a ray", "octree reads", "lower"),
     count("rays.handoffs_mean", "hand-offs a ray", "hand-offs"),
-    share("rays.wrong", "wrong rays (not within 1 %)", "wrong rays", "lower", wrongRays("rays.right_1")),
+    share("rays.wrong", "wrong rays (not within 1 %)", "wrong 1 %", "lower", wrongRays("rays.right_1")),
     share("rays.wrong_02", "wrong rays (not within 0.2 %)", "wrong 0.2 %", "lower", wrongRays("rays.right_02")),
     share("rays.right_1", "right rays, within 1 % of the diagonal", "right 1 %", "higher"),
     share("rays.right_02", "right rays, within 0.2 % of the diagonal", "right 0.2 %", "higher"),

@@ -76,10 +76,12 @@ function probesText(ours: Point, their: Point | undefined): string {
 }
 
 function raysSentence(ours: Point, opponents: Point[]): string {
-    const wrong = measure("rays.wrong");
-    const their = strongest(opponents, wrong);
+    const near = measure("rays.wrong");
+    const exact = measure("rays.wrong_02");
+    const their = strongest(opponents, near);
     return sentence(
-        compared(probesText(ours, their), " of Sconce's glossy rays are wrong", wrong, ours, their),
+        compared(probesText(ours, their), " of Sconce's glossy rays are wrong within 1 % of the diagonal", near, ours, their),
+        exact.of(ours) === null ? "" : compared("", " within 0.2 %", exact, ours, strongest(opponents, exact)),
         their ? "" : "no opponent's rays were judged",
     );
 }
@@ -100,7 +102,7 @@ function pictureSentence(ours: Point, opponents: Point[]): string {
 function priceText(scene: Scene): string {
     const all = scene.analysis?.prices ?? [];
     const [key, what] = all.some((row) => row.error_key === "wrong_rays")
-        ? ["wrong_rays", "half as many wrong rays"]
+        ? ["wrong_rays", "half as many rays wrong within 1 %"]
         : ["glossy.relmse", "half the error of reflections"];
     const rows = all.filter((row) => row.error_key === key);
     if (rows.length === 0) return "";

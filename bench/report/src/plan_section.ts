@@ -3,7 +3,7 @@ import { categorical, css } from "./colour_maps";
 import { h, section, segments, select, svg } from "./dom";
 import { counted, number, percent, seconds } from "./format";
 import { swatch } from "./image_legend";
-import { points, type ProbeSet, type Scene } from "./results";
+import { gridShape, points, type ProbeSet, type Scene } from "./results";
 import { table, type Column } from "./table";
 import { hideTooltip, showTooltip } from "./tooltip";
 
@@ -195,6 +195,7 @@ export function planSection(scene: Scene): HTMLElement {
                 const facts = [
                     counted(of.length, "probe"),
                     set.method,
+                    gridShape(set),
                     set.coverage?.rays !== undefined ? `${percent(set.coverage?.rays)} % of surface rays seen` : "",
                     set.seconds !== undefined ? `placed in ${seconds(set.seconds)}` : "",
                 ];

@@ -59,6 +59,6 @@ export function plotsSection(scene: Scene, styles: Map<string, MethodStyle>, sto
         ),
         h("div", { class: "controls" }, errors, knob, legend),
         h("div", { class: "plots" }, ...plots.map((plot) => plot.element)),
-        details(styles, store),
+        details(scene, styles, store),
     );
 }

@@ -32,6 +32,7 @@ export interface Point {
 export interface ProbeSet {
     method?: string;
     seconds?: number | null;
+    grid?: [number, number, number] | null; // probes along x, y, z
     coverage?: { rays?: number | null; area?: number | null } | null;
     probes?: { position: [number, number, number]; why?: string }[];
 }
@@ -114,6 +115,11 @@ export function isNumber(value: unknown): value is number {
 /** A point's setting that differs from the scene's default point of the same method, as `knob value`. */
 export function nameOf(point: Point): string {
     return point.knob === "default" || !point.knob ? "default" : `${point.knob} ${point.value}`;
+}
+
+/** `6 × 3 × 3`; empty where the probes are no grid. */
+export function gridShape(set: ProbeSet | undefined): string {
+    return set?.grid?.join(" × ") ?? "";
 }
 
 export function points(scene: Scene): Point[] {

@@ -136,15 +136,15 @@ test("error and tone curve follow their definitions", async () => {
     assert.equal(topOf([counts]), 49); // the highest few and those without a number don't count
 });
 
-/** A default point of a method: share of rays that are wrong, FLIP, FLIP and mean of diffuse light, ms and MB; what is null wasn't measured. */
-function pointOf(method, { wrong = null, flip = null, diffuse = null, mean = null, ms = null, mb = null, probes = 54, ...rest } = {}) {
+/** A default point of a method: shares of rays that are wrong within 1 % and 0.2 %, FLIP, FLIP and mean of diffuse light, ms and MB; what is null wasn't measured. */
+function pointOf(method, { wrong = null, exact = null, flip = null, diffuse = null, mean = null, ms = null, mb = null, probes = 54, ...rest } = {}) {
     return {
         id: `${method}/default`,
         method,
         knob: "default",
         value: "",
         probes,
-        rays: wrong === null ? null : { right_1: 1 - wrong },
+        rays: wrong === null ? null : { right_1: 1 - wrong, right_02: exact === null ? null : 1 - exact },
         error: { beauty: { flip }, diffuse: { flip: diffuse, mean } },
         frame_ms: ms === null ? null : { median: ms },
         bytes: mb === null ? null : { total: 1e6 * mb },
@@ -156,14 +156,14 @@ const said = async (points, prices = []) => (await load("opening")).openingSente
 test("three sentences: each against the opponent that is hardest to beat in it", async () => {
     assert.deepEqual(
         await said([
-            pointOf("b0", { wrong: 0.3, flip: 0.4, diffuse: 0.4, mean: 0.7, ms: 5, mb: 90 }),
-            pointOf("ours", { wrong: 0.01, flip: 0.1, diffuse: 0.06, mean: 1.02, ms: 20, mb: 100 }),
-            pointOf("b0plus", { wrong: 0.03, flip: 0.3, diffuse: 0.5, mean: 0.8, ms: 30, mb: 80, probes: 48 }),
+            pointOf("b0", { wrong: 0.3, exact: 0.1, flip: 0.4, diffuse: 0.4, mean: 0.7, ms: 5, mb: 90 }),
+            pointOf("ours", { wrong: 0.01, exact: 0.02, flip: 0.1, diffuse: 0.06, mean: 1.02, ms: 20, mb: 100 }),
+            pointOf("b0plus", { wrong: 0.03, exact: 0.2, flip: 0.3, diffuse: 0.5, mean: 0.8, ms: 30, mb: 80, probes: 48 }),
             pointOf("sh-grid", { flip: 0.3, diffuse: 0.02, mean: 0.88, ms: 40, mb: 3 }),
             pointOf("ddgi-placed", { flip: 0.2, diffuse: 0.03, mean: 1, ms: 10, mb: 2 }),
         ]),
         [
-            "With 54 probes against 48, 1.00 % of Sconce's glossy rays are wrong, 3.00 % with B0+: Sconce wins by a factor of 3.00.",
+            "With 54 probes against 48, 1.00 % of Sconce's glossy rays are wrong within 1 % of the diagonal, 3.00 % with B0+: Sconce wins by a factor of 3.00; 2.00 % within 0.2 %, 10.00 % with B0: Sconce wins by a factor of 5.00.",
             "Sconce's picture is off by FLIP 0.100, 0.200 with DDGI on Sconce's probes: Sconce wins by a factor of 2.00; its diffuse light by 0.0600 (2.0 % too bright), 0.0200 (12 % too dark) with SH grid: Sconce loses by a factor of 3.00.",
             "Sconce's frame takes 20.0 ms, 10.0 ms with DDGI on Sconce's probes: Sconce loses by a factor of 2.00; its light field takes 100 MB, 2.00 MB with DDGI on Sconce's probes: Sconce loses by a factor of 50.0.",
         ],
@@ -230,8 +230,8 @@ test("the price is that of the knob that takes the least time", async () => {
     });
     const price = async (...rows) => (await said([pointOf("ours", { ms: 20, mb: 9 })], rows))[2].split("; ")[2];
     const rows = [row("a", 0.5, 1.4, 2), row("b", 0.6, 1.2, 3), row("c", 1.5, 1.01, 1), row("d", 0.95, null, null)];
-    assert.equal(await price(...rows), "half as many wrong rays would cost 1.20× the frame time and 3.00× the memory, at the rate of resolution.");
-    assert.equal(await price(rows[2], rows[3]), "no knob that was varied would buy half as many wrong rays.");
+    assert.equal(await price(...rows), "half as many rays wrong within 1 % would cost 1.20× the frame time and 3.00× the memory, at the rate of resolution.");
+    assert.equal(await price(rows[2], rows[3]), "no knob that was varied would buy half as many rays wrong within 1 %.");
     assert.equal(
         await price(row("a", 0.5, 1.4, null, { time_ratio: null, error_key: "glossy.relmse" })),
         "half the error of reflections would cost 1.40× the reads, at the rate of resolution.",

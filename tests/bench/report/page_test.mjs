@@ -106,7 +106,7 @@ test("a scene begins with ours, the strongest opponent and the reference, then t
     assert.ok(boxes.every(({ top, bottom }) => top === boxes[0].top && bottom < 720), "in the first window, in one line");
     const sentences = await said();
     assert.equal(sentences.length, 3);
-    assert.equal(sentences[0], "With 54 probes each, 1.80 % of Sconce's glossy rays are wrong, 3.24 % with W': Sconce wins by a factor of 1.80.");
+    assert.equal(sentences[0], "With 54 probes each, 1.80 % of Sconce's glossy rays are wrong within 1 % of the diagonal, 3.24 % with W': Sconce wins by a factor of 1.80; 2.80 % within 0.2 %, 4.24 % with W': Sconce wins by a factor of 1.51.");
     assert.equal(await page.locator("#points details").getAttribute("open"), null);
     assert.equal(await page.locator("#points summary").innerText(), "Table of 55 rows, one a point");
     assert.equal(await page.locator("#points table").isVisible(), false);
@@ -137,9 +137,9 @@ test("the first pictures have one exposure, and sentences say that ours loses", 
     };
     [0.5, 1, 1].forEach((radiance, index) => assert.ok(Math.abs(tones[index] - toneOf(radiance)) <= 1.5, `${tones} at ${index}`));
     assert.deepEqual(await said(), [
-        "With 54 probes each, 10.00 % of Sconce's glossy rays are wrong, 3.24 % with W': Sconce loses by a factor of 3.09.",
+        "With 54 probes each, 10.00 % of Sconce's glossy rays are wrong within 1 % of the diagonal, 3.24 % with W': Sconce loses by a factor of 3.09; 15.00 % within 0.2 %, 4.24 % with W': Sconce loses by a factor of 3.54.",
         "Sconce's picture is off by FLIP 0.500, 0.0935 with W': Sconce loses by a factor of 5.35; its diffuse light by 0.900 (50 % too dark), 0.0450 (0.50 % too dark) with B0+: Sconce loses by a factor of 20.0.",
-        "Sconce's frame takes 1000 ms, 56.0 ms with W': Sconce loses by a factor of 17.9; its light field takes 900 MB, 135 MB with W': Sconce loses by a factor of 6.67; half as many wrong rays would cost 1.15× the frame time and 3.22× the memory, at the rate of probes 128.",
+        "Sconce's frame takes 1000 ms, 56.0 ms with W': Sconce loses by a factor of 17.9; its light field takes 900 MB, 135 MB with W': Sconce loses by a factor of 6.67; half as many rays wrong within 1 % would cost 1.15× the frame time and 3.22× the memory, at the rate of probes 128.",
     ]);
     noFaults();
 });
@@ -412,6 +412,7 @@ test("probes say where they are and why", async () => {
     const dot = await page.locator("svg.plan:not(.ground)").nth(1).locator("circle[data-probe='4']").boundingBox();
     await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
     assert.match(await tooltip(), /grid point 4,2,0[^]*grid point 4,1,0|grid point 4,0,0[^]*grid point 4,1,0/); // all three that stand over each other
+    assert.match(await page.locator(".plan-cell").nth(1).innerText(), /54 probes · grid · 6 × 3 × 3 · /);
     await choose("Seen from", "the front");
     assert.equal(await page.locator("svg.plan:not(.ground)").first().locator("circle").count(), 54);
     noFaults();

@@ -92,6 +92,7 @@ Json losing(const std::filesystem::path& folder, Json results)
     Json& ours = scene["points"][0];
     ours["images"]["beauty"] = "images/half.half";
     ours["rays"]["right_1"] = 0.9;
+    ours["rays"]["right_02"] = 0.85;
     ours["error"]["beauty"]["flip"] = 0.5;
     ours["error"]["diffuse"]["flip"] = 0.9;
     ours["error"]["diffuse"]["mean"] = 0.5;

@@ -17,14 +17,14 @@ namespace
 using namespace testing_support;
 
 constexpr uint32_t kSide = 72; // pixels
+const std::vector<vec3> kProbes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f}, {-0.75f, 1.0f, -0.8f}};
 
 class TemporalTest : public FrameTest
 {
 protected:
     void SetUp() override
     {
-        const std::vector<vec3> probes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}, {0.8f, 0.5f, -0.4f}, {-0.75f, 1.0f, -0.8f}};
-        auto baked = bakeField(scene, probes);
+        auto baked = bakeField(scene, kProbes);
         ASSERT_TRUE(baked) << baked.error().message;
         device.emplace(std::move(*DeviceScene::create(gpu(), scene, baked->info)));
         field.emplace(std::move(*makeLightField(gpu(), *baked)));
@@ -128,6 +128,9 @@ TEST_F(TemporalTest, ASwitchedLightIsThereWithinEightFrames)
 
 TEST_F(TemporalTest, AMovingPictureFlickersAtMostHalfMoreThanTheScene)
 {
+    const auto baked = bakeByTriangles(scene, kProbes, bakeOf(128, 2, knobs::surfaceTexels.value));
+    ASSERT_TRUE(baked) << baked.error().message;
+    field.emplace(std::move(*makeLightField(gpu(), *baked)));
     const auto blended = renderer(true), alone = renderer(false), many = renderer(false, 64);
     double flicker = 0.0, without = 0.0, own = 0.0;
     std::optional<RenderedFrame> before, beforeAlone, beforeMany;

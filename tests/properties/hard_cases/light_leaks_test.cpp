@@ -5,6 +5,7 @@
 #include "runtime/bake/bake.h"
 #include "runtime/scene/scene_renderer.h"
 #include "scene/mesh_builder.h"
+#include "scene/triangle_rays.h"
 #include "tests/properties/hard_cases/hard_case.h"
 #include "tests/properties/hard_cases/hard_frames.h"
 #include "tests/support/device.h"
@@ -56,6 +57,9 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     for (const PlacedProbe& probe : probes->probes) positions.push_back(probe.position);
     BakeSettings settings;
     settings.resolution = 256;
+    const auto rays = TriangleRays::build(scene);
+    ASSERT_TRUE(rays) << rays.error().message;
+    settings.rays = &*rays; // as `sconce bake` does by default
     BakeReport report;
     const auto field = bakeLightField(gpu().host, scene, positions, settings, {}, report);
     ASSERT_TRUE(field) << field.error().message;
@@ -71,17 +75,19 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     ASSERT_TRUE(dark && lit);
     EXPECT_GT(mean(lit->diffuseIndirect), 0.05);
     EXPECT_GT(mean(lit->glossyIndirect), 0.005);
-    const double bound = GetParam() > 1 ? 1e-5 : 7e-4; // found: 4.4e-6 and 3.4e-4
+    // Found behind 1 cm: 1.7e-6 of diffuse light, 3.1e-5 in its brightest pixel, 3e-4 of reflections; behind more: none. Where there is none,
+    // the bounds are what no eye can see.
+    const bool thin = GetParam() == 1;
     const std::string name = "wall of " + std::to_string(GetParam()) + " cm between sun and dark room";
-    expectAtMost(name + ": direct light, share of the lit side", dark->direct.size(), mean(dark->direct) / mean(lit->direct), bound);
+    expectAtMost(name + ": direct light, share of the lit side", dark->direct.size(), mean(dark->direct) / mean(lit->direct), 1e-5);
     expectAtMost(name + ": diffuse indirect, share of the lit side", dark->direct.size(),
-                 mean(dark->diffuseIndirect) / mean(lit->diffuseIndirect), GetParam() > 1 ? 1e-8 : 2.2e-5); // found: 2.8e-9 and 1.1e-5
+                 mean(dark->diffuseIndirect) / mean(lit->diffuseIndirect), thin ? 5e-6 : 1e-8);
     double brightest = 0.0;
     for (const vec3& pixel : dark->diffuseIndirect) brightest = std::max(brightest, double(pixel.y));
     expectAtMost(name + ": brightest pixel of diffuse indirect, share of the lit side's mean", dark->direct.size(),
-                 brightest / mean(lit->diffuseIndirect), GetParam() == 1 ? 0.07 : 2e-5);
+                 brightest / mean(lit->diffuseIndirect), thin ? 6.2e-5 : 1e-6);
     expectAtMost(name + ": glossy indirect, share of the lit side", dark->direct.size(),
-                 mean(dark->glossyIndirect) / mean(lit->glossyIndirect), bound);
+                 mean(dark->glossyIndirect) / mean(lit->glossyIndirect), thin ? 6e-4 : 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Centimetres, LightLeaks, testing::Values(1, 2, 5, 10, 20), testing::PrintToStringParamName());

@@ -52,7 +52,7 @@ TEST_F(VeachAjar, TheDarkRoomHasTheLightOfTheTruth)
     ASSERT_TRUE(probes) << probes.error().message;
     std::vector<vec3> positions;
     for (const PlacedProbe& probe : probes->probes) positions.push_back(probe.position);
-    const auto field = bakeField(*scene, positions, 128, kBounces, kFewTexels, knobs::surfaceRays.value);
+    const auto field = bakeByTriangles(*scene, positions, bakeOf(128, kBounces, kFewTexels, knobs::surfaceRays.value));
     ASSERT_TRUE(field) << field.error().message;
 
     RenderSettings settings;
@@ -88,14 +88,15 @@ TEST_F(VeachAjar, TheDarkRoomHasTheLightOfTheTruth)
         ++blocks;
         brighter += ours[i] > 2.0 * truth[i] && ours[i] - truth[i] > 0.1 * middle;
     }
+    // Through the field 0.06 of all and 0.04 of the darker half were found, beyond the truth, and no such block.
     expectAtMost("veach_ajar: indirect light, ours beyond the truth, relative", frame->beauty.size(), all / allTruth - 1.0, 0.1);
-    expectAtMost("veach_ajar: indirect light, ours short of the truth, relative", frame->beauty.size(), 1.0 - all / allTruth, 0.38, 0.1);
+    expectAtMost("veach_ajar: indirect light, ours short of the truth, relative", frame->beauty.size(), 1.0 - all / allTruth, 0.1);
     expectAtMost("veach_ajar, darker half: indirect light, ours beyond the truth, relative", blocks * kBlock * kBlock,
                  dark / darkTruth - 1.0, 0.1);
     expectAtMost("veach_ajar, darker half: indirect light, ours short of the truth, relative", blocks * kBlock * kBlock,
-                 1.0 - dark / darkTruth, 0.2, 0.1);
+                 1.0 - dark / darkTruth, 0.1);
     expectAtMost("veach_ajar, darker half: share of blocks of over twice the truth's light", blocks, double(brighter) / double(blocks),
-                 0.05);
+                 0.016); // one
 }
 
 } // namespace
