@@ -2,11 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "material.glsl"
 #include "shared/brdf.h"
-#include "shared/chart.h"
+#include "bake_seen.glsl"
 #include "shared/color.h"
 
-// What a probe's texel shows, in one 4 x 32-bit texel: (root of the surface's hemispherical albedo, 3 x 10), (shading normal, octahedral
-// 2 x 16), (geometric normal, the same), (emission, R11G11B10F). Both normals face the probe.
+// What a probe's texel shows, in one 4 x 32-bit texel: (root of the surface's hemispherical albedo, 3 x 10), (shading normal, and how
+// much of light straight from lights counts: packSeenNormal), (normal of the plane, and
+// how little the diffuse lobe takes of light along it: packSeenPlane), (emission, R11G11B10F). Both normals face the probe.
 layout(location = 0) in vec3 relative;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
@@ -26,10 +27,16 @@ void main()
     if (dot(geometric, relative) > 0.0) geometric = -geometric;
     float lengthSquared = dot(normal, normal);
     vec3 smooth_ = lengthSquared > 1e-12 ? normal * inversesqrt(lengthSquared) : geometric;
-    vec3 shading = mappedNormal(material, uv, uvDx, uvDy, smooth_, relativeDx, relativeDy);
+    float together;
+    vec3 shading = mappedNormal(material, uv, uvDx, uvDy, smooth_, relativeDx, relativeDy, together);
     if (dot(smooth_, geometric) < 0.0) shading = -shading;
     SurfacePoint surface = evaluateMaterial(material, uv, uvDx, uvDy);
-    vec3 albedo = hemisphericalAlbedo(BrdfSurface(clamp(surface.baseColor.rgb, 0.0, 1.0), surface.metallic, surface.roughness));
-    outSurface = uvec4(packRootOfColor(albedo), packUnorm2x16(octahedralFromDirection(shading)),
-                       packUnorm2x16(octahedralFromDirection(geometric)), packRadiance(surface.emission));
+    BrdfSurface reflecting = BrdfSurface(clamp(surface.baseColor.rgb, 0.0, 1.0), surface.metallic, surface.roughness);
+    vec3 albedo = hemisphericalAlbedo(reflecting);
+    // Of many normals each sees less of the hemisphere over their plane than their mean does, and less of a light along the mean.
+    // As grazingOf() fits it, near enough for light from one side.
+    float grazing = reflecting.roughness > kRoughestLobe ? 0.0 : (1.0 - reflecting.metallic) * 21.0 * (diffuseAlong(1.0, reflecting.roughness) - 1.0);
+    float ofAll = 0.5 + 0.5 * together;
+    outSurface = uvec4(packRootOfColor(ofAll * albedo), packSeenNormal(shading, together / ofAll, shareToAllSides(reflecting)),
+                       packSeenPlane(geometric, grazing), packRadiance(surface.emission));
 }

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "bake_probe.glsl"
+#include "bake_seen.glsl"
 #include "lights.glsl"
 
 // Bake: a probe's rasterised faces become distance words, radiance under direct light, and what a bounce needs of the surface: all lobes are
@@ -12,6 +13,7 @@ layout(set = 1, binding = kBakeSurfaceBinding) uniform utexture2D surfaceImage; 
 layout(set = 1, binding = kBakeDepthBinding) uniform texture2D depthImage;    // near / W, 0: sky
 
 layout(constant_id = kBakeAreaLightId) const bool kAreaLight = true;
+layout(constant_id = kBakeCoatsId) const bool kCoatsByRays = false;
 
 void main()
 {
@@ -30,8 +32,8 @@ void main()
         return;
     }
     uvec4 seen = texelFetch(surfaceImage, pixel, 0);
-    vec3 shading = directionFromOctahedral(unpackUnorm2x16(seen.y));
-    vec3 geometric = directionFromOctahedral(unpackUnorm2x16(seen.z));
+    vec3 shading = seenNormal(seen.y);
+    vec3 geometric = seenPlane(seen.z);
     vec3 emission = unpackRadiance(seen.w);
 
     float q = depth / push.nearPlane;
@@ -45,7 +47,8 @@ void main()
     push.words.word[wordIndex] = packTexel(q, gradient.x, gradient.y);
 
     vec3 albedo = unpackRootOfColor(seen.x);
-    vec3 irradiance = deltaLight(p, shading, geometric);
+    float straight = seenTogether(seen.y) * (kCoatsByRays ? seenToAllSides(seen.y) : 1.0);
+    vec3 irradiance = straight * deltaLight(p, shading, geometric, kCoatsByRays ? seenGrazing(seen.z) : 0.0);
     if (kAreaLight) irradiance += areaLight(p, shading, geometric);
     push.radiance.word[index] = packRadiance(emission + albedo * irradiance / kBrdfPi);
     if (!isNull(push.emitted)) push.emitted.word[index] = seen.w;

@@ -106,11 +106,16 @@ vec3 directLightOf(uint kind, uint i, vec3 p, vec3 shadingNormal, vec3 geometric
     return max(dot(shadingNormal, s.toLight), 0.0) * s.irradiance;
 }
 
-/// Irradiance of a surface from lights of no extent, W/m^2.
-vec3 deltaLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal)
+/// Irradiance of a surface from lights of no extent, W/m^2, as much as its diffuse lobe takes: see takenAlong().
+vec3 deltaLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal, float grazing)
 {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < lightsHeader.deltaCount; ++i) sum += directLightOf(lights[i].type, i, p, shadingNormal, geometricNormal);
+    for (uint i = 0u; i < lightsHeader.deltaCount; ++i)
+    {
+        LightSample s = lightAt(lights[i].type, i, p, geometricNormal);
+        float cosine = max(dot(shadingNormal, s.toLight), 0.0);
+        sum += cosine * takenAlong(cosine, grazing) * s.irradiance;
+    }
     return sum;
 }
 

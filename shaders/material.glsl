@@ -47,13 +47,22 @@ SurfacePoint evaluateMaterial(uint material, vec2 uv, vec2 uvDx, vec2 uvDy)
 /// The shading normal that a normal texture makes of the interpolated one; as RayScene's.
 /// @param normal              unit
 /// @param acrossX, acrossY    change of the position to the next pixel, as uvDx and uvDy
-vec3 mappedNormal(uint material, vec2 uv, vec2 uvDx, vec2 uvDy, vec3 normal, vec3 acrossX, vec3 acrossY)
+/// @param together            length of the mean of all normals that this one stands for: 1 where they are one
+vec3 mappedNormal(uint material, vec2 uv, vec2 uvDx, vec2 uvDy, vec3 normal, vec3 acrossX, vec3 acrossY, out float together)
 {
     GpuMaterial m = sconceMaterials[material];
+    together = 1.0;
     if (m.normalTexture.layer < 0) return normal;
     mat2 turned = mat2(m.normalTexture.uvMatrix.xy, m.normalTexture.uvMatrix.zw);
     vec3 read = sconceTexture(sconceDataTextures, m.normalTexture, uv, uvDx, uvDy).rgb;
+    together = min(length(2.0 * read - 1.0), 1.0); // the mips are means
     return bentNormal(normal, uvTangents(acrossX, acrossY, turned * uvDx, turned * uvDy), read, m.normalStrength);
+}
+
+vec3 mappedNormal(uint material, vec2 uv, vec2 uvDx, vec2 uvDy, vec3 normal, vec3 acrossX, vec3 acrossY)
+{
+    float together;
+    return mappedNormal(material, uv, uvDx, uvDy, normal, acrossX, acrossY, together);
 }
 
 /// A fragment's lot, [0,1): by the bits of its place and depth, so that layers behind each other draw their own (PCG hash).

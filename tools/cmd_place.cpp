@@ -54,6 +54,15 @@ void readSpace(const std::string& text, OpenSpace& open)
         open.box = Bounds{{(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}};
 }
 
+/// As --space takes it.
+std::string nameOf(const OpenSpace& open)
+{
+    if (open.ground > 0.0f) return fmt::format("ground:{}", open.ground);
+    if (!open.box) return "enclosed";
+    const vec3 low = open.box->low, high = open.box->high;
+    return fmt::format("{},{},{},{},{},{}", low.x, low.y, low.z, high.x, high.y, high.z);
+}
+
 int runPlace(const PlaceOptions& options, const Context& context)
 {
     const Stopwatch watch;
@@ -115,6 +124,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     json["median_distance"] = report.medianDistance;
     json["reachable"] = {
         {"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
+    json["space"] = nameOf(options.settings.open);
     json["surface_left_out"] = report.surfaceLeftOut;
     json["voxel"] = report.voxel;
     json["clearance"] = report.clearance;
@@ -129,8 +139,8 @@ int runPlace(const PlaceOptions& options, const Context& context)
         std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
                   << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area "
                   << 100.0f * report.coverageArea << " %\n"
-                  << "reachable space: " << report.reachableVolume << " m^3, cells of " << report.voxel << " m; it leaves out "
-                  << 100.0f * report.surfaceLeftOut << " % of the scene's surface\n"
+                  << "reachable space (" << nameOf(options.settings.open) << "): " << report.reachableVolume << " m^3, cells of "
+                  << report.voxel << " m; it leaves out " << 100.0f * report.surfaceLeftOut << " % of the scene's surface\n"
                   << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
     }
     return exitOk;

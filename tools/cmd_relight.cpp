@@ -85,7 +85,8 @@ void addRelightCommand(CLI::App& app, Context& context)
         ->required()
         ->type_name("");
     relight->add_option("-o,--output", options->output, ".sconce file to write (required)")->required()->type_name("FILE");
-    relight->add_flag("--keep", options->keep, "Keeps groups and links, so that its light still changes; else it stays, in a smaller file");
+    relight->add_flag("--keep", options->keep,
+                      described("Keeps groups and links, so that its light still changes; else it stays, in a smaller file", words("off")));
     addDims(relight, options->dims);
     options->live.add(relight);
     addDevice(relight, options->device);

@@ -1,5 +1,6 @@
 #include "tools/field_report.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -10,6 +11,7 @@
 #include "bench/opponents/baselines.h"
 #include "runtime/bake/prefilter.h"
 #include "runtime/field/light_field_file.h"
+#include "runtime/field/tracer_cpu.h"
 
 namespace sconce::tools
 {
@@ -21,6 +23,26 @@ const char* chartName(uint32_t chart)
 {
     return chart == gpu::kChartCube ? "cube" : "octahedral";
 }
+
+/// Median of the texels of surface light that show a surface, of some evenly spread: how many fit into a metre there. 0: there are none.
+double texelsPerMetre(const FieldData& field)
+{
+    constexpr size_t kAsked = 100000;
+    twin::LightFieldTwin<float> text(field, {});
+    const uint32_t side = field.info.surfaceSize, texels = 6 * side * side * field.info.probeCount;
+    std::vector<double> found;
+    for (size_t i = 0; i < texels; i += 1 + texels / kAsked)
+    {
+        const auto at = uint32_t(i);
+        const auto point = text.surfacePointAt(at / (6 * side * side), int(at / (side * side) % 6), int(at % side), int(at / side % side));
+        if (point.width > 0.0f) found.push_back(1.0 / double(point.width * field.info.scale));
+    }
+    if (found.empty()) return 0.0;
+    const auto middle = found.begin() + std::ptrdiff_t(found.size() / 2);
+    std::ranges::nth_element(found, middle);
+    return *middle;
+}
+constexpr double kFewTexels = 4.0; // a metre: contact shadows of chairs and shelves are lost
 
 Json bytesJson(const FieldBytes& bytes)
 {
@@ -57,6 +79,7 @@ Json fieldJson(const FieldData& field)
     json["resolution"] = field.resolution;
     json["face_size"] = info.faceSize;
     json["surface_size"] = info.surfaceSize;
+    if (info.surfaceSize > 0) json["surface_texels_per_metre"] = texelsPerMetre(field);
     json["surface_directions"] = info.surfaceDirections != 0;
     json["lamps"] = field.lamps.size();
     json["bounces"] = field.bounces;
@@ -93,12 +116,17 @@ void printField(const FieldData& field, const std::string& file)
                              megabytes(bytes.prefiltered), megabytes(bytes.irradiance), megabytes(bytes.index))
               << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
               << ", voxels of " << field.octree.voxel * info.scale << " m\n";
+    const double density = info.surfaceSize > 0 ? texelsPerMetre(field) : 0.0;
     if (info.surfaceSize > 0)
-        std::cout << fmt::format("surface light: {} texels a face's side{}; {}, {} of it in cells of {} m in the open, {} in {} refined "
-                                 "texels, {} of hidden surfaces\n",
-                                 info.surfaceSize, info.surfaceDirections != 0 ? " with directions" : "", megabytes(bytes.surface),
-                                 megabytes(bytes.cells), float(1 << info.cellShift) * info.voxel * info.scale, megabytes(bytes.refined),
-                                 info.refinedTexels, megabytes(bytes.hidden));
+        std::cout << fmt::format(
+            "surface light: {} texels a face's side{}, {:.1f} a metre{}; {}, {} of it in cells of {} m in the open, {} in {} refined "
+            "texels, {} of hidden surfaces\n",
+            info.surfaceSize, info.surfaceDirections != 0 ? " with directions" : "", density,
+            density < kFewTexels && info.surfaceSize < knobs::surfaceTexels.most
+                ? fmt::format(" (few: --surface-texels {} has more)", knobs::surfaceTexels.most)
+                : "",
+            megabytes(bytes.surface), megabytes(bytes.cells), float(1 << info.cellShift) * info.voxel * info.scale,
+            megabytes(bytes.refined), info.refinedTexels, megabytes(bytes.hidden));
     if (!field.lamps.empty())
         std::cout << fmt::format("lamps: {}, with shadow maps of {} texels a side, {}\n", field.lamps.size(), field.lamps[0].size,
                                  megabytes(bytes.lamps));

@@ -16,7 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = {"ours": "Sconce", "ours-grid": "Sconce's tracer, grid", "b0": "B0", "b0plus": "B0+", "b0plus-octree": "B0+, our lists", "wang": "W', our lists",
-         "ddgi": "DDGI", "ddgi-placed": "DDGI, our probes", "sh-grid": "SH grid", "path tracer": "path tracer", "path tracer filtered": "path tracer, filtered"}
+         "ddgi": "DDGI", "ddgi-placed": "DDGI, our probes", "sh-grid": "SH grid", "ddgi bytes": "DDGI, equal bytes", "sh-grid bytes": "SH grid, equal bytes", "path tracer": "path tracer", "path tracer filtered": "path tracer, filtered"}
 # Label, asked: from the analysis (what is held equal, error, cost, ratio), or of the default points, at equal probes (a figure).
 TARGETS = [
     ("equal glossy relMSE: frame time", "0.25", ("glossy.relmse", "frame_ms", "time")),
@@ -28,7 +28,7 @@ TARGETS = [
     ("equal glossy relMSE: memory", "0.5", ("glossy.relmse", "bytes", "memory")),
 ]
 NAMED = {"cornell_glossy.glb": "cornell_mcguire glossy", "zdm2.glb": "map_zdm2"}  # files whose names say too little
-SHORT = {"ours-grid": "own", "b0plus-octree": "B0+, lists", "wang": "W'", "ddgi-placed": "DDGI, own probes"}  # in targets
+SHORT = {"ours-grid": "own", "b0plus-octree": "lists", "wang": "W'", "ddgi-placed": "DDGI, own probes"}  # in targets
 PATHS = ("path tracer", "path tracer filtered")
 
 
@@ -134,7 +134,7 @@ def least_to_most(values):
 def summary(rows, scenes):
     """Over the scenes, the least and the most of what a method's figures are times ours, and KiB a probe."""
     found = {}
-    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64"):
+    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "ddgi_bytes", "sh_grid_bytes", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64"):
         for figure in ("wrong", "wrong_02", "diffuse_relmse", "beauty_flip", "frame_ms"):
             pairs = [(rows[f"{slug(name)}__{method}"][figure], rows[f"{slug(name)}__ours"][figure]) for name in scenes]
             times = [float(theirs) / float(ours) for theirs, ours in pairs if theirs and ours]
@@ -146,14 +146,32 @@ def summary(rows, scenes):
     return {"all": {"label": "theirs over ours, over the scenes"} | found}
 
 
+def at_best(points):
+    """Points, each volume's default being the one of its biases whose diffuse light is least wrong; its points of more probes are named `_bytes`."""
+    found = []
+    for point in points:
+        volume = point["method"] in ("ddgi", "ddgi-placed", "sh-grid")
+        if volume and point["knob"] == "default":
+            biased = [other for other in points if other["method"] == point["method"] and other["knob"] in ("default", "look-up bias") and "error" in other]
+            best = min(biased, key=lambda other: other["error"]["diffuse"]["relmse"], default=point)
+            found.append(best | {"knob": "default"} | ({"bias": best["value"]} if best is not point else {}))
+        elif volume and point["knob"] == "probes":
+            if all(int(other["value"]) <= int(point["value"]) for other in points if (other["method"], other["knob"]) == (point["method"], "probes")):
+                found.append(point | {"knob": "default", "method": point["method"] + " bytes"})
+        else:
+            found.append(point)
+    return found
+
+
 def methods(files):
     scenes, commands = scenes_of(files)
     rows = {}
     for name, scene in scenes.items():
-        for point in scene["points"]:
+        for point in at_best(scene["points"]):
             if point["knob"] == "default" or (point["knob"] == "paths" and point["value"] in ("1", "4", "16", "64")):
                 key = slug(point["method"]) + ("" if point["knob"] == "default" else f"_{point['value']}")
-                rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point) | {"grid_shape": grid_shape(scene, point)}
+                rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point)
+                rows[f"{slug(name)}__{key}"] |= {"grid_shape": grid_shape(scene, point), "bias": point.get("bias", "")}
     rows |= summary(rows, scenes)
     notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
              "..._unsure: the standard error of relMSE by the reference's noise",
@@ -251,9 +269,9 @@ def rays(arguments):
 
 def walls(arguments):
     rows = {}
-    for wall in ("1", "2", "5", "10", "20", "curtain"):
+    for wall in ("0.5", "1", "2", "5", "10", "20", "curtain"):
         both, dark = (json.loads(Path(arguments[0], wall + end).read_text()) for end in (".json", ".right.json"))
-        rows[f"wall_{wall}"] = {"label": wall if wall == "curtain" else f"wall of {wall} cm", "relmse": f"{both['relmse']:.4f}", "flip": f"{both['flip']:.3f}",
+        rows[slug(f"wall {wall}")] = {"label": wall if wall == "curtain" else f"wall of {wall} cm", "relmse": f"{both['relmse']:.4f}", "flip": f"{both['flip']:.3f}",
                                 "dark_relmse": f"{dark['relmse']:.6f}", "dark_flip": f"{dark['flip']:.3f}", "dark_light": f"{dark['mean']:.3f}"}
     write("walls.json", "Two rooms, one a hundred times darker, by what stands between them", ["bench/pages/leaks_sheet.sh"],
           ["dark_light: the mean of the dark room's own picture, ours over the reference's"], rows)

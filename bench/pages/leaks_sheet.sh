@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Walls of 1 to 20 cm and a curtain without thickness between a bright room and one a hundred times darker (bench/pages/divided_room.py): how
+# Walls of 0.5 to 20 cm and a curtain without thickness between a bright room and one a hundred times darker (bench/pages/divided_room.py): how
 # much light the dark room has against the path tracer, bench/results/walls.json; OUT/leaks.png has a row each: ours, reference, error in false
 # colours, shown so that the dark room is bright.
 # Environment: SCONCE=the command, built when not given, SIZE=WxH [192x96], SPP=paths a pixel [512], EXPOSURE=of the pictures [12], OUT=folder
@@ -11,7 +11,7 @@ out=${OUT:-out/leaks} size=${SIZE:-192x96} spp=${SPP:-512} exposure=${EXPOSURE:-
 sconce=${SCONCE:-build/release/tools/sconce}
 mkdir -p "$out"
 pictures=()
-for wall in 1 2 5 10 20 curtain; do
+for wall in 0.5 1 2 5 10 20 curtain; do
     at=$out/$wall
     bench/pages/divided_room.py "$wall" > "$at.gltf"
     "$sconce" place "$at.gltf" --count 12 --inside -1.5,1.3,0 --inside 1.5,1.3,0 -o "$at.probes.json" --quiet > /dev/null

@@ -70,6 +70,7 @@ Result<FieldData> KeptFields::fieldFor(const PointSettings& settings, Json& cost
     bake.chart = settings.chart();
     bake.bounces = settings.bounces;
     bake.surfaceTexels = settings.bakedSurfaceTexels();
+    bake.surfaceRays = settings.surfaceRays;
     bake.surfaceRefined = settings.surfaceRefined;
     bake.octree.voxels = settings.octreeVoxels;
     bake.grid = probes->set.grid;
@@ -114,6 +115,7 @@ std::string KeptFields::fieldKey(const std::string& probes, const BakeSettings& 
                       {"chart", bake.chart},
                       {"bounces", bake.bounces},
                       {"surface", bake.surfaceTexels},
+                      {"surface rays", bake.surfaceTexels > 0 ? bake.surfaceRays : 0},
                       {"refined", bake.surfaceTexels > 0 ? bake.surfaceRefined : 0.0f},
                       {"lamps", bake.surfaceTexels > 0 ? bake.lampTexels : 0},
                       {"gather", fieldGather},

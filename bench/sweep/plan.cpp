@@ -123,6 +123,18 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         planner.addDefault(paths);
         for (const std::string_view value : findKnob("paths")->sweep) planner.addVaried(paths, *findKnob("paths"), std::string(value));
     }
+    // Volumes at the bias that suits the scene, and with as many bytes as our diffuse light is read from.
+    const size_t without = bytesPerProbe(gpu::kChartCube, ours.resolution, 0),
+                 surface = bytesPerProbe(gpu::kChartCube, ours.resolution, knobs::surfaceTexels.value) - without +
+                           2 * gpu::kPatches * sizeof(uint32_t);
+    for (const PointSettings& volume : theirs)
+    {
+        if (!volume.volume()) continue;
+        for (const std::string_view value : findKnob("look-up bias")->sweep)
+            planner.addVaried(volume, *findKnob("look-up bias"), std::string(value));
+        if (*volume.volume() != Volume::ddgiPlaced)
+            planner.addProbeCounts(volume, {double(surface) / double(sizeof(uint32_t) * volumeWordsPerProbe(*volume.volume()))});
+    }
     if (settings.methodsOnly) return std::move(planner.points);
 
     planner.addProbeCounts(ours, {0.25, 0.5, 2.0});
@@ -136,15 +148,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         planner.addProbeCounts(theirs[i], {0.5, 2.0});
         for (const double factor : opponents()[i].curve)
             planner.addVaried(theirs[i], *findKnob("resolution"), fmt::to_string(uint32_t(theirs[i].resolution * factor) & ~15u));
-        if (const std::optional<Volume> volume = theirs[i].volume())
-        {
-            // As many bytes as our diffuse light is read from.
-            if (*volume != Volume::ddgiPlaced)
-                planner.addProbeCounts(theirs[i], {double(kIrradianceWordsPerProbe) / double(volumeWordsPerProbe(*volume))});
-            for (const std::string_view value : findKnob("look-up bias")->sweep)
-                planner.addVaried(theirs[i], *findKnob("look-up bias"), std::string(value));
-            continue;
-        }
+        if (theirs[i].volume()) continue;
         planner.addVaried(theirs[i], *findKnob("rays"), "4");
         planner.addVaried(theirs[i], *findKnob("trace every"), "4"); // any tracer gains by it
     }

@@ -19,7 +19,7 @@ struct PlanSettings
     uint32_t probes = knobs::benchProbes.value; // of the default points
     std::vector<std::string> knobs;             // only these; empty: all
     std::vector<std::string> methods;           // only these; empty: all
-    bool methodsOnly = false;                   // the methods' default points alone
+    bool methodsOnly = false;                   // the methods' default points alone, volumes at several biases and at equal bytes, too
     std::optional<float> roughness;             // of every surface
     PointSettings ours;                         // our default point; method, probes and roughness are set from the above
 };

@@ -30,8 +30,9 @@ namespace
 constexpr uint32_t kTimerScopes = 32;
 constexpr uint32_t kTemporalFrames = 16; // of a still camera, before a picture that is filtered over time is judged
 constexpr const char* kLayers[][2] = {{"beauty", "beauty"}, {"diffuse", "diffuse_indirect"}, {"glossy", "glossy_indirect"}};
-constexpr uint32_t kJudgedMaps = 128; // texels, of grids to choose among
-constexpr uint64_t kPathSeed = 1000;  // the path tracer's paths are not the reference's
+constexpr uint32_t kJudgedMaps = 128;                           // texels, of grids to choose among
+constexpr uint32_t kJudgedRays = 65536, kFewestJudgedRays = 64; // of all probes of a volume on such a grid, and of one at least
+constexpr uint64_t kPathSeed = 1000;                            // the path tracer's paths are not the reference's
 
 double secondsNow()
 {
@@ -129,7 +130,8 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
 {
     if (const std::optional<Volume> volume = settings.volume())
     {
-        auto field = volumeOn(bareGrid(desc.scene, grid), settings, *volume, {});
+        auto field = volumeOn(bareGrid(desc.scene, grid), settings, *volume, {},
+                              std::clamp(kJudgedRays / settings.probes, kFewestJudgedRays, VolumeSettings().rays));
         if (!field) return field.error();
         auto light = makeLightField(gpu, *field);
         if (!light) return light.error();
@@ -183,14 +185,16 @@ Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume vo
     }
     if (!places) return places;
     const double begin = secondsNow();
-    auto made = volumeOn(std::move(*places), settings, volume, progress);
+    auto made = volumeOn(std::move(*places), settings, volume, progress, VolumeSettings().rays);
     cost["bake_s"] = secondsNow() - begin;
     return made;
 }
 
-Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress)
+Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress,
+                                       uint32_t rays)
 {
     VolumeSettings wanted;
+    wanted.rays = rays;
     wanted.bias = settings.lookUpBias;
     wanted.bounces = settings.bounces;
     wanted.seed = desc.settings.seed;

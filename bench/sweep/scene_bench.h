@@ -94,7 +94,7 @@ private:
     std::string pointKey(const PlannedPoint& point) const;
     bool software() const; // the device is the CPU
     Result<double> wrongOnGrid(const ProbeGrid& grid, const PointSettings& settings);
-    Result<FieldData> volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress);
+    Result<FieldData> volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress, uint32_t rays);
     Result<std::unique_ptr<SceneRenderer>> rendererOf(const PointSettings& settings, const LightField& field, RenderSettings frame,
                                                       const Progress& progress);
     Result<FieldData> volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress);

@@ -89,6 +89,7 @@ std::vector<SweptKnob> makeKnobs()
         knob("resolution", bake, mapped, {"128", "256", "416", "512", "1024"}, knobs::resolution, SCONCE_FIELD(resolution)),
         knob("bounces", bake, placed, {"0", "1", "2", "4"}, knobs::bounces, SCONCE_FIELD(bounces)),
         knob("surface texels", bake, fields, {"0", "26", "52", "104"}, knobs::surfaceTexels, SCONCE_FIELD(surfaceTexels)),
+        knob("surface rays", bake, fields, {"16", "64", "256"}, knobs::surfaceRays, SCONCE_FIELD(surfaceRays)),
         knob("surface refined", bake, fields, {"0", "0.02", "0.1"}, knobs::surfaceRefined, SCONCE_FIELD(surfaceRefined)),
         knob("field gather", bake, fields, {"off", "on"}, knobs::gather, SCONCE_FIELD(fieldGather)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),

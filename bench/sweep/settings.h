@@ -33,6 +33,7 @@ struct PointSettings
     uint32_t bounces = knobs::benchBounces.value;
     uint32_t surfaceTexels =
         knobs::surfaceTexels.value;                     // of ours, and of what an opponent's maps are lit by; patches are of fields without
+    uint32_t surfaceRays = knobs::surfaceRays.value;    // that gather light for each
     float surfaceRefined = knobs::surfaceRefined.value; // share of them, where triangles are gathered from
     bool fieldGather = knobs::gather.is("field");       // surface light gathered through the field, not by rays to triangles
     int octreeVoxels = knobs::octreeVoxels.value;       // OctreeSettings::voxels

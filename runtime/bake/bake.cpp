@@ -488,7 +488,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
                 .emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
         auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
-        auto baker = ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight);
+        auto baker = ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light));
         if (!baker) return baker.error();
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();

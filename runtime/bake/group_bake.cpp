@@ -96,10 +96,10 @@ std::string groupFault(const BakeSettings& settings)
 Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                   std::vector<LightGroupDesc> groups, const Progress& progress, BakeReport& report)
 {
+    if (std::string fault = groupFault(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
     if (settings.liveLinks > 0 && groups.empty()) groups.push_back({"rest", {}});
     auto selected = selectLights(scene, groups);
     if (!selected) return selected.error();
-    if (std::string fault = groupFault(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
     Scene fixed = scene; // what doesn't move
     const std::vector<uint32_t> live = settings.liveLinks > 0 ? takeLiveLights(groups, *selected) : std::vector<uint32_t>();
     for (const uint32_t light : live) fixed.lights[light].intensity = vec3(0.0f);

@@ -44,9 +44,9 @@ void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 } // namespace
 
 Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
-                                                       bool surfaceLight)
+                                                       bool surfaceLight, bool coatsByRays)
 {
-    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight));
+    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight, coatsByRays));
     baker->octahedral = info.chart == gpu::kChartOctahedral;
     baker->emitters = scene.lights().shines;
     baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
@@ -138,14 +138,14 @@ Status ProbeBaker::createPipelines()
         Spirv code;
         std::span<const VkDescriptorSetLayout> sets;
     };
-    const ShaderConstant areaLight{gpu::kBakeAreaLightId, surfacesLit ? 0u : 1u};
+    const ShaderConstant constants[] = {{gpu::kBakeAreaLightId, surfacesLit ? 0u : 1u}, {gpu::kBakeCoatsId, coats ? 1u : 0u}};
     for (const Pass& pass :
          {Pass{surfacePass, bake_surface_comp, sceneAndImages}, Pass{chainPass, bake_chain_comp, {}}, Pass{texelPass, bake_texels_comp, {}},
           Pass{octahedralPass, bake_octahedral_comp, imagesOnly}, Pass{lowPass, bake_octahedral_low_comp, {}},
           Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
           Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
     {
-        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush), std::span(&areaLight, 1));
+        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush), constants);
         if (!made) return made.error();
         pass.pipeline = std::move(*made);
     }

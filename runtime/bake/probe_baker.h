@@ -30,8 +30,9 @@ class ProbeBaker
 {
 public:
     /// @param surfaceLight  whether surfaces are lit by surface light: direct light is then of what has no extent alone
+    /// @param coatsByRays   whether rays to triangles find what coats reflect of it, so that it isn't in the probes' light
     static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
-                                                      bool surfaceLight);
+                                                      bool surfaceLight, bool coatsByRays);
 
     /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
     Status bakeDirect(vec3 centre, const ProbeTarget& target);
@@ -42,8 +43,8 @@ public:
     Status bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target);
 
 private:
-    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo, bool surfaceLight)
-        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight)
+    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo, bool surfaceLight, bool coatsByRays)
+        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight), coats(coatsByRays)
     {
     }
     Status createPipelines();
@@ -61,6 +62,7 @@ private:
     const DeviceScene& scene;
     const gpu::LightFieldInfo info;
     const bool surfacesLit; // by surface light
+    const bool coats;       // are lit by rays
     bool octahedral = false;
     bool emitters = false;      // whether emission is kept a texel
     uint32_t radianceWords = 0; // of the chart

@@ -50,14 +50,15 @@ struct Gatherer : LightFieldTwin<float>
     TriangleGather::Desc desc;
     float gap;
     std::span<const glm::vec3> palette;
-    std::span<uint32_t> links; // of the probe
-    size_t slot = 0;           // of the texel in it
-    vec3 brought{0.0f};        // light of emitters and sky that the rays have brought by reflection, summed
+    std::span<const float> straight; // TriangleGather::straight
+    std::span<uint32_t> links;       // of the probe
+    size_t slot = 0;                 // of the texel in it
+    vec3 brought{0.0f};              // light of emitters and sky that the rays have brought by reflection, summed
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
-             std::span<const glm::vec3> tints, std::span<uint32_t> into)
+             std::span<const glm::vec3> tints, std::span<const float> ofMaterials, std::span<uint32_t> into)
         : LightFieldTwin<float>(data, {}), triangles(rays), lightsHeader(list.header), lights(list.lights), emitters(list.emitters),
-          desc(wanted), gap(offset), palette(tints), links(into)
+          desc(wanted), gap(offset), palette(tints), straight(ofMaterials), links(into)
     {
     }
 
@@ -114,6 +115,7 @@ struct Gatherer : LightFieldTwin<float>
             const vec3 color = specularColor(lobes);
             const float all = luminance(color), onward = shareOnward(place.surface, all);
             brought += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, random);
+            brought += tint * straightBySpecular(place, direction, random);
             from = place.position + 2.0f * gap * place.normal;
             if (turn < kMostTurns && random.uniform() < onward)
             {
@@ -128,7 +130,8 @@ struct Gatherer : LightFieldTwin<float>
             const float goesOn = luminance(scattered);
             brought += tint * scattered *
                        (emittersByDiffuse(place, random) +
-                        (deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) / kBrdfPi);
+                        (shareToAllSides(place.surface) * deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) /
+                            kBrdfPi);
             if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
             tint *= scattered / goesOn;
             const vec3 up = sampleCosine(random.uniform2());
@@ -143,6 +146,7 @@ struct Gatherer : LightFieldTwin<float>
         vec3 position;        // world
         vec3 normal, shading; // unit, on the side that is met
         BrdfSurface surface;
+        uint32_t material;
     };
 
     Place placeOf(const ExactRays::Hit& hit, vec3 direction) const
@@ -151,12 +155,12 @@ struct Gatherer : LightFieldTwin<float>
         const uvec3 corner = scene.triangles[hit.triangle];
         const vec3 share(1.0f - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
         const auto blend = [&](const auto& of) { return share.x * of[corner.x] + share.y * of[corner.y] + share.z * of[corner.z]; };
-        Place place{blend(scene.positions), facing(hit.triangle, direction), vec3(0.0f), {}};
+        Place place{blend(scene.positions), facing(hit.triangle, direction), vec3(0.0f), {}, scene.triangleMaterial[hit.triangle]};
         const vec3 smooth_ = blend(scene.normals);
         place.shading = dot(smooth_, smooth_) > 1e-12f ? normalize(smooth_) : place.normal;
         if (dot(place.shading, place.normal) < 0.0f) place.shading = -place.shading;
         if (dot(place.shading, direction) > -kLeastCosine) place.shading = place.normal;
-        const sconce::SurfacePoint look = evaluateMaterial(scene, scene.triangleMaterial[hit.triangle], blend(scene.uvs));
+        const sconce::SurfacePoint look = evaluateMaterial(scene, place.material, blend(scene.uvs));
         place.surface = {clamp(vec3(look.baseColor), 0.0f, 1.0f), look.metallic, look.roughness};
         return place;
     }
@@ -166,9 +170,8 @@ struct Gatherer : LightFieldTwin<float>
     /// @param reflected  share of white light, [0,1]
     static float shareOnward(const BrdfSurface& surface, float reflected)
     {
-        return surface.roughness > kRoughestOnward ? 0.0f : std::min(reflected, kMostOnward);
+        return surface.roughness > kRoughestLobe ? 0.0f : std::min(reflected, kMostOnward);
     }
-    static constexpr float kRoughestOnward = 0.7f; // the lobes of rougher ones are about as wide as the diffuse one
     static constexpr float kMostOnward = 0.75f; // so that rays that end count not too much each; the rest of a metal's light is scattered
 
     /// Turns a ray by the specular lobe that it meets.
@@ -243,6 +246,30 @@ struct Gatherer : LightFieldTwin<float>
         return evaluateLobes(lobes, place.surface.roughness, place.shading, -direction, light.toLight).specular *
                (dot(light.toLight, place.shading) / density) * light.emission;
     }
+
+    /// Light straight from lights of no extent that a coat reflects against a ray: shareToAllSides() leaves it out. Lobes sharper than some
+    /// are widened, or rays would find their light by chance; shadow rays to the rest are drawn by how much it is.
+    vec3 straightBySpecular(const Place& place, vec3 direction, Random& random) const
+    {
+        if (place.surface.roughness > kRoughestLobe || !(place.surface.metallic < 1.0f)) return vec3(0.0f);
+        const float roughness = std::max(place.surface.roughness, kSharpestFound), view = -dot(place.shading, direction);
+        const BrdfLobes coat = lobesAt({vec3(0.0f), 0.0f, roughness}, view);
+        const vec3 point = (place.position - field.origin) / field.scale + 2.0f * gap / field.scale * place.normal;
+        vec3 sum(0.0f);
+        for (const GpuLight& light : lights.first(lightsHeader.deltaCount))
+        {
+            const DeltaLight at = deltaLightAt(light, light.type, point, 2.0f * field.diagonal);
+            const float cosine = dot(at.toLight, place.shading);
+            if (!(cosine > 0.0f) || !(dot(at.toLight, place.normal) > 0.0f)) continue;
+            const float sent = cosine * evaluateLobes(coat, roughness, place.shading, -direction, at.toLight).specular.x;
+            const float asked = std::min(sent / kSurelyAsked, 1.0f);
+            if (random.uniform() < asked && emitterReaches(point, at.toLight, at.distance, place.normal))
+                sum += (1.0f - place.surface.metallic) * sent / asked * at.irradiance;
+        }
+        return sum;
+    }
+    static constexpr float kSharpestFound = 0.3f; // roughness
+    static constexpr float kSurelyAsked = 0.02f;  // radiance sent over irradiance from which on a shadow ray is surely traced
 
     /// Mean radiance that arrives straight from emitters, weighted by the cosine.
     vec3 emittersByDiffuse(const Place& place, Random& random) const
@@ -357,7 +384,7 @@ struct Gatherer : LightFieldTwin<float>
     uint directOf(const gpu::SurfaceTexel& known, const Place& place) const
     {
         const float onward = shareOnward(place.surface, luminance(hemisphericalSpecular(place.surface)));
-        return packSharedExponent(unpackRootOfColor(known.albedo) / (1.0f - onward));
+        return packSharedExponent(straight[place.material] * unpackRootOfColor(known.albedo) / (1.0f - onward));
     }
 
     /// A patch seen from within some of its widths is no disc on its axis: there rays that meet its triangle count.
@@ -453,6 +480,24 @@ struct Gatherer : LightFieldTwin<float>
 namespace
 {
 
+/// Of each material, how much of the light straight from lights its surface sends, over what it would by its albedo: normal textures
+/// spread, and the mean of what many normals get of a light is less than what their mean gets. bake_gbuffer.frag finds the same from mips.
+std::vector<float> straightShares(const Scene& scene)
+{
+    constexpr int kSteps = 64; // places of a texture, along each side
+    std::vector<float> shares(scene.materials.size(), 1.0f);
+    for (uint32_t material = 0; material < shares.size(); ++material)
+    {
+        if (scene.materials[material].normalTexture.image < 0) continue;
+        vec3 sum(0.0f);
+        for (int i = 0; i < kSteps * kSteps; ++i)
+            sum += 2.0f * readNormalTexture(scene, material, (vec2(i % kSteps, i / kSteps) + 0.5f) / float(kSteps)) - 1.0f;
+        const float together = std::min(glm::length(sum) / float(kSteps * kSteps), 1.0f);
+        shares[material] = 2.0f * together / (1.0f + together);
+    }
+    return shares;
+}
+
 /// Colours that the scene's metals give what they reflect, the farthest from those before first, where they differ visibly.
 std::vector<vec3> metalTints(const Scene& scene)
 {
@@ -485,7 +530,7 @@ std::vector<vec3> metalTints(const Scene& scene)
 TriangleGather::TriangleGather(const ExactRays& rays, const FieldData& data, std::span<const gpu::SurfaceTexel> known,
                                const LightList& list, const Desc& wanted)
     : triangles(&rays), field(&data), texels(known), lights(&list), desc(wanted), gap(rayOffset(rays.scene())),
-      palette(metalTints(rays.scene()))
+      palette(metalTints(rays.scene())), straight(straightShares(rays.scene()))
 {
     for (size_t i = 0; i < grazings.size(); ++i) grazings[i] = twin::Gatherer::grazingOfRoughness(float(i) / float(grazings.size() - 1));
     assert(desc.rays > 0 && desc.shadowRays <= gpu::kMostShadowRays && data.info.surfaceSize > 0);
@@ -504,7 +549,7 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
     parallelFor(size_t(6) * side,
                 [&](size_t row)
                 {
-                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, target.links);
+                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, target.links);
                     const int face = int(row / side), y = int(row % side);
                     for (int x = 0; x < int(side); ++x)
                     {
@@ -547,7 +592,7 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
 {
     constexpr uint32_t kSide = 1u << gpu::kFineLog;
     std::vector<uint32_t> links(desc.rays);
-    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, links);
+    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, links);
     FinePoints found;
     for (uint32_t i = 0; i < found.size(); ++i)
     {
@@ -576,7 +621,7 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
     std::vector<uint32_t> links(rays);
     Desc fewer = desc;
     fewer.rays = rays;
-    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, links);
+    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, links);
     const auto got = text.gatherAt(point, normal, normal, sample, grazing);
     return {got.light,
             text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
@@ -592,7 +637,7 @@ std::vector<uint32_t> TriangleGather::linksAt(vec3 point, vec3 normal, float gra
     std::vector<uint32_t> links(rays);
     Desc fewer = desc;
     fewer.rays = rays;
-    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, links);
+    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, links);
     text.gatherAt(point, normal, normal, sample, grazing);
     return links;
 }
@@ -611,7 +656,7 @@ TriangleGather::Cells TriangleGather::gatherCells() const
                     for (int facing = 0; facing < 6; ++facing)
                     {
                         const size_t index = 6 * cell + size_t(facing);
-                        twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette,
+                        twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight,
                                             std::span(found.links).subspan(index * desc.rays, desc.rays));
                         if (facing == 0) found.places[cell] = text.openPlace(at);
                         if (found.places[cell] == 0) return;
@@ -627,7 +672,7 @@ TriangleGather::Cells TriangleGather::gatherCells() const
 void TriangleGather::lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const
 {
     assert(words.size() == gpu::kCellWords * cells.places.size());
-    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, {});
+    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, {});
     for (size_t cell = 0; cell < cells.places.size(); ++cell)
     {
         uint32_t* const own = &words[gpu::kCellWords * cell];

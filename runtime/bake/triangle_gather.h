@@ -96,6 +96,7 @@ private:
     Desc desc;
     float gap; // metres that rays start off their surface
     std::vector<vec3> palette;
+    std::vector<float> straight;       // by material, see straightShares()
     std::array<float, 256> grazings{}; // by roughness
 };
 

@@ -51,6 +51,7 @@ struct BakePush
 };
 SCONCE_CHECK_SIZE(BakePush, 104);
 
+const uint kBakeCoatsId = 1u;     // bake_surface.comp: whether rays to triangles find what coats reflect of lights of no extent, see shareToAllSides()
 const uint kBakeAreaLightId = 0u; // bake_surface.comp: whether direct light has emitters and sky in it, by their shadow maps
 
 // Where a gathering ray of a texel ended: the index of another texel, whose light it brings, in the lower bits, above them which of kTints colours

@@ -8,11 +8,6 @@ SCONCE_FN vec2 pairOfRay(uvec2 pixel, uint i, uint stream)
     return randomPair(pixel, i & ((1u << kSampleBits) - 1u), stream, 2654435769u * (i >> kSampleBits));
 }
 
-// What a diffuse lobe under a smooth coat takes of light along a cosine c, over its mean: near 1 + grazing (1/21 - (1 - c)^5), whose mean over the
-// hemisphere, weighted by the cosine, is 1. A fit of diffuseAlong(), off by 0.014 in the mean square where it is worst (roughness 0.3).
-SCONCE_CONST real kMostGrazing = real(1.05);
-SCONCE_PURE real takenAlong(real c, real grazing) { return real(1.0) + grazing * (real(1.0) / real(21.0) - schlick(c)); }
-
 /// A texel's grazing, from 8 bits of its SurfaceTexel::normal.
 SCONCE_PURE real unpackGrazing(uint normal) { return real(normal >> 24) * (kMostGrazing / real(255.0)); }
 

@@ -1,5 +1,6 @@
 // Radiance and irradiance lookups of the shared text, on fields whose light is known.
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -69,6 +70,100 @@ TEST(LightLookup, UniformRadianceGivesThatCosineMeanWhicheverWayASurfaceFaces)
         int reads = 0;
         EXPECT_NEAR(text.irradianceAt(p, n, p, reads).g, 3.0f, 0.03f);
     }
+}
+
+constexpr uint32_t kToldFace = 32; // texels
+
+/// What a probe is told of its light and of the distances that it sees, field units; halves and packed colours hold these exactly.
+struct ToldProbe
+{
+    double light, mean, variance, harmonic; // the last as the header has it, 0: not known
+};
+
+/// The say of a probe as it is published: wrapped cosine (Majercik et al. 2019, section 4), Chebyshev's bound (McGuire et al. 2017, section
+/// 5.2) cubed, the inverse square of the distance; and what is ours: a probe close to surfaces reaches four times their harmonic distance,
+/// and one that a wall hides has next to none.
+double publishedWeight(const ToldProbe& probe, glm::dvec3 toProbe, glm::dvec3 normal, double voxel, bool hidden)
+{
+    const double distance = glm::length(toProbe), wrap = 0.5 * glm::dot(toProbe / distance, normal) + 0.5;
+    double weight = hidden ? 0.0 : wrap * wrap + 0.02;
+    if (distance > probe.mean)
+    {
+        const double variance = probe.variance + 1e-6;
+        weight *= std::pow(variance / (variance + (distance - probe.mean) * (distance - probe.mean)), 3.0);
+    }
+    if (probe.harmonic > 0.0) weight /= 1.0 + std::pow(distance / (4.0 * probe.harmonic), 4.0);
+    return std::max(weight, 1e-6) / (distance * distance + voxel * voxel);
+}
+
+// Light that differs from probe to probe, since of uniform light no weight is wrong: each look-up against the published blend, in double.
+TEST(LightLookup, LightOfUnequalProbesIsThePublishedBlend)
+{
+    // Two rooms without an opening: what stands in one is hidden from the probes of the other.
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.5f));
+    mesh.box(vec3(-1.0f), vec3(1.0f), white);
+    mesh.box(vec3(-0.02f, -1.0f, -1.0f), vec3(0.02f, 1.0f, 1.0f), white);
+    const RayScene rays = std::move(*RayScene::create(scene));
+    const std::vector<vec3> places = {{-0.5f, 0.2f, -0.1f}, {-0.35f, -0.3f, 0.4f}, {0.45f, 0.1f, 0.3f}, {0.6f, -0.4f, -0.2f}};
+    const std::vector<ToldProbe> told = {{1.0, 0.0625, 0.00390625, 0.25},
+                                         {2.0, 0.125, 0.0078125, 0.03125},
+                                         {4.0, 0.1875, 0.001953125, 0.0},
+                                         {8.0, 0.125, 0.0078125, 0.0625}};
+    FieldData field = testing_support::fieldByRays(rays, places, kToldFace);
+    twin::LightFieldTwin<float> text(field, testing_support::defaultQuality());
+    field.irradiance.clear();
+    for (size_t probe = 0; probe < told.size(); ++probe)
+    {
+        field.probes[probe].harmonic = float(told[probe].harmonic);
+        for (uint32_t i = 0; i < gpu::kIrradianceSize * gpu::kIrradianceSize; ++i)
+        {
+            field.irradiance.push_back(text.packRadiance(vec3(float(told[probe].light))));
+            field.irradiance.push_back(text.realToHalf(float(told[probe].mean)) | (text.realToHalf(float(told[probe].variance)) << 16));
+        }
+    }
+    // A texel's angle is the root of its share of the sphere: by so much of the distance a point is taken to be off its surface.
+    const double texel = std::sqrt(4.0 * std::numbers::pi / (6.0 * kToldFace * kToldFace));
+    std::mt19937 random(6);
+    std::normal_distribution<float> towards;
+    std::uniform_real_distribution<float> across(0.15f, 0.85f), along(-0.6f, 0.6f);
+    int blended = 0, walled = 0;
+    for (int i = 0; i < 3000; ++i)
+    {
+        const vec3 normal = glm::normalize(vec3(towards(random), towards(random), towards(random)));
+        vec3 world(across(random), along(random), along(random));
+        if (i % 2 == 0) world.x = -world.x;
+        const auto inField = [&](vec3 p) { return (p - field.info.origin) / field.info.scale; };
+        const vec3 point = inField(world);
+        // Every third asks the leaf of the point beyond the wall, whose probes it is hidden from.
+        const vec3 lookUp = inField(i % 3 == 0 ? vec3(-world.x, world.y, world.z) : world);
+        int reads = 0;
+        const glm::uvec4 ranked = text.rankedProbesAt(lookUp, reads);
+        double sum = 0.0, weights = 0.0;
+        int asked = 0;
+        for (int k = 0; k < gpu::kRanked; ++k)
+        {
+            bool repeated = false;
+            for (int j = 0; j < k; ++j) repeated = repeated || ranked[j] == ranked[k];
+            if (repeated) continue;
+            const uint32_t probe = ranked[k];
+            const glm::dvec3 straight = glm::dvec3(vec3(field.probes[probe].centre)) - glm::dvec3(point);
+            const glm::dvec3 toProbe = straight - texel * glm::length(straight) * glm::dvec3(normal);
+            const bool hidden = (places[probe].x < 0.0f) != (world.x < 0.0f);
+            const double weight = publishedWeight(told[probe], toProbe, normal, field.info.voxel, hidden);
+            sum += weight * told[probe].light;
+            weights += weight;
+            ++asked;
+            walled += hidden;
+        }
+        blended += asked > 1;
+        const double expected = sum / weights;
+        EXPECT_NEAR(text.irradianceAt(point, normal, lookUp, reads).g, expected, 1e-3 * expected)
+            << "at " << world.x << ' ' << world.y << ' ' << world.z << " of " << asked << " probes";
+    }
+    EXPECT_GT(blended, 1000) << "blends of several probes";
+    EXPECT_GT(walled, 300) << "probes behind the wall";
 }
 
 // Lobes were once looked up where the probe's surroundings lie in the lobe's direction, which is another place by as much as the probe is

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/opponents/irradiance_volume.h"
 #include "bench/sweep/sweep.h"
 #include "runtime/field/field_data.h"
 
@@ -56,6 +57,30 @@ TEST(Plan, OctahedralMapsTakeAsMuchMemoryAsCubeFaces)
         EXPECT_LE(bytesPerProbe(gpu::kChartOctahedral, theirs), bytes) << resolution;
         EXPECT_GT(bytesPerProbe(gpu::kChartOctahedral, theirs + 16), bytes) << resolution;
     }
+}
+
+// A volume has the bias that suits the scene, and is shown with as many bytes as ours reads diffuse light from.
+TEST(Plan, VolumesHaveTheirBestBiasAndAsManyBytes)
+{
+    PlanSettings settings = ofSixteen();
+    settings.methods = {"ddgi"};
+    settings.methodsOnly = true;
+    const auto plan = planPoints(settings);
+    ASSERT_TRUE(plan);
+    size_t biases = 0, larger = 0;
+    for (const PlannedPoint& point : *plan)
+    {
+        biases += point.knob == "look-up bias" ? 1 : 0;
+        if (point.knob != "probes") continue;
+        ++larger;
+        const double bytes = 4.0 * volumeWordsPerProbe(Volume::ddgi) * point.settings.probes,
+                     ours =
+                         16.0 * double(bytesPerProbe(gpu::kChartCube, settings.ours.resolution, 52) -
+                                       bytesPerProbe(gpu::kChartCube, settings.ours.resolution, 0) + 2 * gpu::kPatches * sizeof(uint32_t));
+        EXPECT_NEAR(bytes, ours, 0.01 * ours);
+    }
+    EXPECT_EQ(biases, 4u);
+    EXPECT_EQ(larger, 1u);
 }
 
 TEST(Plan, AKnobThatIsNotThereIsASentence)

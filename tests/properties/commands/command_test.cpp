@@ -501,6 +501,35 @@ TEST(Command, LightsMoveAfterTheBake)
     EXPECT_EQ(live["format_version"], 8);
     EXPECT_NE(sconceCommand({"info", folder / "f.sconce"}).out.find("live: 8 links a texel"), std::string::npos);
 
+    // Captured, the same is dark until it is lit, by those lights if told nothing else: to the byte the bake.
+    const json captured = jsonOf(
+        sconceCommand({"capture", "cornell-glossy", "--probes", folder / "p.json", "--lights", one, "--live-links", "8", "--resolution",
+                       "64", "--surface-texels", "26", "--surface-rays", "16", "-o", folder / "dark.sconce", "--json"}));
+    EXPECT_EQ(captured["lit"], false);
+    EXPECT_NE(sconceCommand({"info", folder / "dark.sconce"}).out.find("captured, not lit"), std::string::npos);
+    const json lit = jsonOf(sconceCommand({"relight", folder / "dark.sconce", "-o", folder / "lit.sconce", "--keep", "--json"}));
+    EXPECT_EQ(lit["lit"], true);
+    EXPECT_EQ(readText(folder / "lit.sconce"), readText(folder / "f.sconce"));
+    const auto shown = [&](const char* field, const char* picture)
+    {
+        return jsonOf(sconceCommand(
+            {"render", "cornell-glossy", "--field", folder / field, "--lights", one, "--size", "64x36", "-o", folder / picture, "--json"}));
+    };
+    EXPECT_TRUE(shown("dark.sconce", "captured.exr").contains("live_light_ms"));
+    EXPECT_FALSE(shown("f.sconce", "baked.exr").contains("live_light_ms"));
+    const auto apart = [&](const char* layer, const char* figure)
+    {
+        return jsonOf(sconceCommand({"compare", folder / "captured.exr", folder / "baked.exr", "--layer", layer, "--json"}))
+            .at(figure)
+            .get<double>();
+    };
+    EXPECT_EQ(apart("direct", "mse"), 0.0);
+    EXPECT_EQ(apart("diffuse_indirect", "mse"), 0.0);
+    EXPECT_NEAR(apart("glossy_indirect", "mean"), 1.0, 0.02) << "a file's radiance is stored in fewer bits";
+    expectSentence(
+        sconceCommand({"capture", "cornell-glossy", "--probes", folder / "p.json", "--live-links", "0", "-o", folder / "x.sconce"}), 2,
+        "live links");
+
     // In the file and in the frame it is the same light, and another one than before.
     const json relit = jsonOf(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "other.sconce", "--lights", other, "--json"}));
     EXPECT_EQ(relit["format_version"], 6) << "a static field has nothing of it";

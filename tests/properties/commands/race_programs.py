@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """The programs that race tracers, from end to end on one small light field.
 
-race_programs.py RAY_ACCURACY REPLAY TESSELLATION
+race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE COMMAND
 
 sconce_tessellation cuts and bakes a scene; rays of it that sconce_ray_accuracy records have the same answers from sconce_replay.
+sconce_light_response switches the lamp of a live field.
 """
 import json
 import pathlib
@@ -30,7 +31,7 @@ def untimed(rows):
 
 
 def main():
-    ray_accuracy, replay, tessellation = sys.argv[1:]
+    ray_accuracy, replay, tessellation, light_response, command = sys.argv[1:]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         probes, rays = folder / "p.json", folder / "r.rays"
@@ -51,6 +52,18 @@ def main():
         expect(first[0]["right_1"] > 0.85, f"ours is wrong: {first[0]}")
         timed = json.loads(run(replay, rays, "--field", field, "--runs", 2, "--timed", 500, "--json").stdout)
         expect(untimed(timed) != timed, f"timed runs have no times: {timed}")
+
+        lights, live = folder / "l.json", folder / "live.sconce"
+        lights.write_text('{"lights":[{"type":"point","position":[0,1.5,0],"intensity":[1,1,1]}]}', encoding="utf-8")
+        small = ["--resolution", 64, "--surface-texels", 26, "--surface-rays", 16]
+        run(command, "bake", "cornell", "--lights", lights, "--probes", probes, "--live-links", 8, *small, "-o", live)
+        lines = run(light_response, live, "--frames", 20, "--share", 1, "--share", 0.3).stdout.splitlines()
+        rows = [[float(cell) for cell in line.split(";")] for line in lines[1:21]]
+        ours, some, blended = ([row[column] for row in rows] for column in (1, 3, 5))
+        expect(ours[3] > 0.95, f"at full budget the lamp is not there after four frames: {ours}")
+        expect(ours[0] > some[0] and some[-1] > 0.95, f"one probe a frame: {some}")
+        expect(blended == sorted(blended) and blended[-1] < 0.5, f"blended light comes slowly: {blended}")
+        run(light_response, field, code=3)
 
         run(replay, folder / "none.rays", "--field", field, code=5)
         refused = run(replay, rays, "--field", f"theirs={field}", code=2).stderr

@@ -1,5 +1,6 @@
 // A convex body under a sky of radiance 1 everywhere: what leaves it is what its BRDF reflects of white light, and no more.
 #include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -35,8 +36,14 @@ class FurnaceTest : public FrameTest
 TEST_F(FurnaceTest, ReflectsWhatThePathTracerSaysWithinOnePercent)
 {
     const std::vector<vec3> probes = {{0, 0, 2}, {0, 2, 0}, {2, 0, 0}, {-2, 0, 0}, {0, -2, 0}, {0, 0, -2}};
-    for (const auto& [roughness, metallic] :
-         {std::pair{0.0f, 1.0f}, {0.2f, 1.0f}, {0.3f, 0.0f}, {0.4f, 1.0f}, {0.6f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}})
+    // A percent is asked for; of metals twice what is found, and at least what is left of the noise.
+    for (const auto& [roughness, metallic, most] : {std::tuple{0.0f, 1.0f, 0.001},
+                                                    {0.2f, 1.0f, 0.001},
+                                                    {0.3f, 0.0f, 0.01},
+                                                    {0.4f, 1.0f, 0.0033},
+                                                    {0.6f, 1.0f, 0.0041},
+                                                    {1.0f, 1.0f, 0.0068},
+                                                    {1.0f, 0.0f, 0.01}})
     {
         const Scene scene = ball(vec3(1.0f), roughness, metallic);
         const auto field = bakeField(scene, probes, 64, 0, kFewTexels, knobs::surfaceRays.value);
@@ -63,7 +70,7 @@ TEST_F(FurnaceTest, ReflectsWhatThePathTracerSaysWithinOnePercent)
         char name[128];
         std::snprintf(name, sizeof(name), "furnace, roughness %g, metallic %g: reflected light against the path tracer's, relative",
                       double(roughness), double(metallic));
-        expectAtMost(name, frame->depth.size(), std::abs(got / asked - 1.0), 0.01);
+        expectAtMost(name, frame->depth.size(), std::abs(got / asked - 1.0), most);
     }
 }
 

@@ -133,7 +133,7 @@ vec3 weighed2017(Text& text, const Sample& sample, vec3 point, std::span<const A
 }
 
 /// RTXGI 1.3 (Majercik et al. 2019 and after): biased point, wrapped cosine, Chebyshev cubed with a floor, small weights crushed, blended
-/// as square roots. The bias, which is the scene's own choice there, is ours along the normal and as much along the view.
+/// as square roots. The bias, which is the scene's own choice there, is 0.2 % of the diagonal along the normal and as much along the view.
 vec3 weighedRtxgi(Text& text, const Sample& sample, vec3 point, std::span<const Asked> asked)
 {
     vec3 sum(0.0f);

@@ -1,8 +1,11 @@
 // What must hold wherever rays are traced, in every kind of scene: the box of a room, columns, sheets without thickness, streets with
 // rooms, and a real building. 10,000 rays a row.
 #include <array>
+#include <initializer_list>
 #include <limits>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -47,6 +50,13 @@ protected:
     }
 
     static bool differ(const TracedRay& a, const TracedRay& b) { return a.status != b.status || a.t != b.t || a.handoffs != b.handoffs; }
+    /// Of this scene, where more than hardly any ray was found: at most twice as many.
+    static double bound(std::initializer_list<std::pair<std::string_view, double>> found)
+    {
+        for (const auto& [scene, most] : found)
+            if (scene == GetParam()) return most;
+        return kHardlyAny;
+    }
     std::string row(const char* what) const { return std::string(GetParam()) + ": " + what; }
 
     std::unique_ptr<HardScene> made;
@@ -85,7 +95,8 @@ TEST_P(EveryScene, RaysEndAndDependOnNoLevelNorSignOfZero)
     const auto more = answers(uncapped);
     size_t cut = 0;
     for (size_t i = 0; i < more.size(); ++i) cut += differ(expected[i], more[i]);
-    expectAtMost(row("share answered otherwise without a cap on hand-offs"), more.size(), double(cut) / double(more.size()), 0.0007);
+    expectAtMost(row("share answered otherwise without a cap on hand-offs"), more.size(), double(cut) / double(more.size()),
+                 bound({{"town", 0.0004}, {"sponza", 0.0007}}));
 
     size_t signs = 0;
     for (size_t i = 0; i < kRays; ++i)
@@ -112,7 +123,7 @@ TEST_P(EveryScene, RaysEndAndDependOnNoLevelNorSignOfZero)
         walk.trace(o, anyRay(1, i).second);
     }
     expectAtMost(row("rays stopped by the limit of turns"), walk.rays, double(walk.limitReached), 0.0);
-    expectAtMost(row("turns, share of the derived limit"), walk.rays, walk.worstTurns, 1.0);
+    expectAtMost(row("turns, share of the derived limit"), walk.rays, walk.worstTurns, 0.006); // beyond 1 it would be stopped
     expectAtMost(row("times t falls outside a second opinion"), walk.rays, double(walk.fallsOutsideOpinions), 0.0);
     expectAtMost(row("numbers that are not finite"), walk.rays, double(walk.notFinite), 0.0);
 }
@@ -155,7 +166,8 @@ TEST_P(EveryScene, DeepAndShallowOctreesGiveTheSameAnswers)
         worst = std::max(worst, right - scoreTraces(glossy, walkAll(other, glossy)).right1);
         limits += other.limitReached + other.notFinite;
     }
-    expectAtMost(row("octrees of 1, 5 and 6 levels: loss of the share right"), 3 * kRays, worst, 0.001);
+    expectAtMost(row("octrees of 1, 5 and 6 levels: loss of the share right"), 3 * kRays, worst,
+                 bound({{"temple", 0.001}, {"curtains", 0.001}, {"town", 0.0008}}));
     expectAtMost(row("octrees of 1, 5 and 6 levels: rays stopped by the limit, or not finite"), 3 * kRays, double(limits), 0.0);
 }
 

@@ -133,9 +133,9 @@ TEST_F(HardFrames, RoughnessExactlyZeroAndOneAgainstThePathTracer)
         const size_t pixels = frame->beauty.size();
         const double asked = mean(truth.find("beauty")->pixels), glossy = mean(truth.find("glossy_indirect")->pixels);
         expectAtMost(name + ": numbers that are not finite", pixels, double(notFinite(*frame)), 0.0);
-        expectAtMost(name + ": mean light against the path tracer, relative", pixels, std::abs(mean(frame->beauty) / asked - 1.0), 0.03);
+        expectAtMost(name + ": mean light against the path tracer, relative", pixels, std::abs(mean(frame->beauty) / asked - 1.0), 0.008);
         expectAtMost(name + ": mean of reflections against the path tracer, relative", pixels,
-                     std::abs(mean(frame->glossyIndirect) / glossy - 1.0), 0.08, 0.03);
+                     std::abs(mean(frame->glossyIndirect) / glossy - 1.0), roughness > 0.0f ? 0.08 : 0.07, 0.03);
     }
 }
 
@@ -214,7 +214,7 @@ TEST_F(HardFrames, LightOfAMillionIsFiniteEverywhere)
         EXPECT_GT(mean(frame->beauty), 1.0) << name;
         if (asked > 1e5)
             expectAtMost(row + ": brightest pixel against what the lamp emits, relative", frame->beauty.size(),
-                         std::abs(brightest / asked - 1.0), 1e-3);
+                         std::abs(brightest / asked - 1.0), 1.8e-4);
     }
 }
 
@@ -259,9 +259,9 @@ TEST_F(HardFrames, PicturesOnePixelWideOrHighAreStripsOfWiderOnes)
         const std::string row = "picture of " + std::to_string(size.width) + " x " + std::to_string(size.height);
         expectAtMost(row + ": numbers that are not finite", pixels, double(bad), 0.0);
         expectAtMost(row + ": share of pixels whose surface or direct light is another than in a wider picture", pixels,
-                     double(other) / double(pixels), 0.002);
+                     double(other) / double(pixels), 5e-4); // two of 4,096: none was found, and edges hang on the driver's rounding
         expectAtMost(row + ": indirect light against the wider picture's, relative", pixels, std::abs(own / theirs - 1.0),
-                     pixels == 1 ? 0.5 : 0.05);
+                     pixels == 1 ? 0.17 : 0.035); // noise: twice the most that was found of a pixel, and of thousands
     }
 }
 
@@ -302,6 +302,7 @@ TEST_F(HardFrames, CamerasWhereNobodyStands)
     for (const Material& material : cornell().materials) brightest = std::max(brightest, double(material.emission.x));
     double worst = 0.0;
     for (const vec3& pixel : frame->beauty) worst = std::max(worst, double(pixel.x));
+    // From there the scene is less than a pixel: what that shows, if anything, hangs on the driver's rounding.
     expectAtMost("camera 1e6 m outside: brightest pixel, share of the lamp", frame->beauty.size(), worst / brightest, 1.0);
 }
 

@@ -79,8 +79,8 @@ TEST_P(Grazing, StartsWithinThreeDegreesOfTheirSurface)
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Grazing,
-                         testing::Values(GrazingCase{"cornell", 8, 128, 0.03, 0.03, 0.006},
-                                         GrazingCase{"temple", 24, 128, 0.026, 0.008, 0.015},
+                         testing::Values(GrazingCase{"cornell", 8, 128, 0.026, 0.0165, 0.0058},
+                                         GrazingCase{"temple", 24, 128, 0.018, 0.006, 0.01},
                                          GrazingCase{"hall", 24, 128, 0.05, 0.024, 0.05}, GrazingCase{"sponza", 48, 256, 0.08, 0.05, 0.06}),
                          [](const auto& one) { return std::string(one.param.scene); });
 

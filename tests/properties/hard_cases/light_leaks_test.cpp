@@ -75,8 +75,8 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     ASSERT_TRUE(dark && lit);
     EXPECT_GT(mean(lit->diffuseIndirect), 0.05);
     EXPECT_GT(mean(lit->glossyIndirect), 0.005);
-    // Found behind 1 cm: 1.7e-6 of diffuse light, 3.1e-5 in its brightest pixel, 3e-4 of reflections; behind more: none. Where there is none,
-    // the bounds are what no eye can see.
+    // Found, gathered through the field, behind 1 cm: 1.7e-6 of diffuse light, 3.1e-5 in its brightest pixel, 3e-4 of reflections; behind
+    // more: none. Where there is none, the bounds are what no eye can see.
     const bool thin = GetParam() == 1;
     const std::string name = "wall of " + std::to_string(GetParam()) + " cm between sun and dark room";
     expectAtMost(name + ": direct light, share of the lit side", dark->direct.size(), mean(dark->direct) / mean(lit->direct), 1e-5);

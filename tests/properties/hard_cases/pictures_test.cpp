@@ -47,6 +47,10 @@ DeviceSceneDesc samples()
     return desc;
 }
 
+// Where a pixel or none is another, by a rounding: another processor may bring it to three of the 2,304.
+constexpr double kHardlyAPixel = 0.0013, kHardlyBrighter = 1.5e-4;
+constexpr double kNoise = 0.0075; // of the mean light, with other random numbers; 0.0038 found
+
 class MetamorphicPictures : public FrameTest
 {
 protected:
@@ -122,20 +126,20 @@ TEST_F(MetamorphicPictures, MovedTurnedMirrored)
 {
     Picture moved;
     moved.map([](vec3 p) { return p + vec3(37.0f, -12.5f, 8.25f); }, [](vec3 d) { return d; });
-    expectLikePlain("moved by (37, -12.5, 8.25) m", draw(moved), 0.02, 0.002);
+    expectLikePlain("moved by (37, -12.5, 8.25) m", draw(moved), kHardlyAPixel, kHardlyBrighter);
 
-    expectLikePlain("as it is, with other random numbers", draw({}, 2), 0.2, 0.01); // what a mirrored picture can't do better than
+    expectLikePlain("as it is, with other random numbers", draw({}, 2), 0.2, kNoise); // what a mirrored picture can't do better than
 
     Picture turned;
     const auto quarter = [](vec3 p) { return vec3(p.z, p.y, -p.x); };
     turned.map(quarter, quarter);
-    expectLikePlain("turned by 90 degrees", draw(turned), 0.2, 0.02);
+    expectLikePlain("turned by 90 degrees", draw(turned), 0.2, kNoise);
 
     Picture mirrored;
     const auto mirror = [](vec3 p) { return vec3(-p.x, p.y, p.z); };
     mirrored.map(mirror, mirror);
     for (uvec3& triangle : mirrored.scene.triangles) std::swap(triangle.y, triangle.z);
-    expectLikePlain("mirrored", draw(mirrored), 0.3, 0.02, true);
+    expectLikePlain("mirrored", draw(mirrored), 0.3, 0.0155, true);
 }
 
 TEST_F(MetamorphicPictures, OtherOrdersAndAProbeTwice)
@@ -149,15 +153,15 @@ TEST_F(MetamorphicPictures, OtherOrdersAndAProbeTwice)
         std::swap(shuffled.scene.triangleMaterial[i - 1], shuffled.scene.triangleMaterial[j]);
     }
     for (uvec3& t : shuffled.scene.triangles) t = uvec3(t.y, t.z, t.x);
-    expectLikePlain("vertices and triangles in another order", draw(shuffled), 0.03, 0.01);
+    expectLikePlain("vertices and triangles in another order", draw(shuffled), 0.03, 0.0009);
 
     Picture reversed;
     std::ranges::reverse(reversed.probes);
-    expectLikePlain("probes in another order", draw(reversed), 0.02, 0.002);
+    expectLikePlain("probes in another order", draw(reversed), kHardlyAPixel, kHardlyBrighter);
 
     Picture doubled;
     doubled.probes.push_back(doubled.probes[2]);
-    expectLikePlain("a probe twice", draw(doubled), 0.02, 0.01);
+    expectLikePlain("a probe twice", draw(doubled), kHardlyAPixel, kHardlyBrighter);
 }
 
 } // namespace

@@ -1,4 +1,6 @@
 // One text, three machines: float against double on the CPU, and the device against float.
+#include <string_view>
+
 #include <gtest/gtest.h>
 
 #include "runtime/field/light_field.h"
@@ -43,8 +45,10 @@ TEST_P(Precision, FloatAnswersLikeDouble)
         own += a.status != c.status || (a.status == TraceStatus::hit && std::abs(double(a.t) - tRounded) > 1e-4 * tRounded);
     }
     const std::string name = std::string("float against double, ") + GetParam();
-    expectAtMost(name + ": share of another status", set.size(), double(status) / kRays, 0.0005);
-    expectAtMost(name + ": share with t off by over 1e-4", set.size(), double(far) / kRays, 0.0005);
+    // Found: five rays in the town, two in Sponza, none elsewhere.
+    const double most = std::string_view(GetParam()) == "town" ? 0.0005 : kHardlyAny;
+    expectAtMost(name + ": share of another status", set.size(), double(status) / kRays, kHardlyAny);
+    expectAtMost(name + ": share with t off by over 1e-4", set.size(), double(far) / kRays, most);
     expectAtMost(name + " from the start that float has: share of another status or t", set.size(), double(own) / kRays, 0.0001);
     expectAtMost(name + ": rays stopped by the limit, in all three", 3 * set.size(), double(single.limitReached + oracle.limitReached),
                  0.0);
@@ -83,8 +87,8 @@ TEST_F(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
         integers += !same;
         far += same && std::abs(cpu.t - hits[i].t) > 2e-5f * cpu.t;
     }
-    expectAtMost("device against float, curtains: share with another integer", rays.size(), double(integers) / kRays, 0.0005, 0.0);
-    expectAtMost("device against float, curtains: share with t off by over 2e-5", rays.size(), double(far) / kRays, 0.0005, 0.0);
+    expectAtMost("device against float, curtains: share with another integer", rays.size(), double(integers) / kRays, kHardlyAny, 0.0);
+    expectAtMost("device against float, curtains: share with t off by over 2e-5", rays.size(), double(far) / kRays, kHardlyAny, 0.0);
 }
 
 } // namespace

@@ -135,8 +135,8 @@ TEST(OddProbes, From1To65535)
             crossed += got.status == TraceStatus::hit && x * o.x < 0.0f && std::abs(x) > 0.1f;
         }
         const std::string name = std::to_string(probes) + " probes in a divided box, faces of 8";
-        expectAtMost(name + ": share through the wall", kRays, double(crossed) / kRays, 0.006);
-        expectAtMost(name + ": share that leaves", kRays, double(miss) / kRays, 0.008);
+        expectAtMost(name + ": share through the wall", kRays, double(crossed) / kRays, probes == 1 ? kHardlyAny : 0.006);
+        expectAtMost(name + ": share that leaves", kRays, double(miss) / kRays, probes == 1 ? kHardlyAny : 0.008);
         expectAtMost(name + ": rays stopped by the limit, or not finite", kRays, double(walk.limitReached + walk.notFinite), 0.0);
     }
 }
@@ -146,7 +146,11 @@ TEST(OddProbes, FacesOfAnySizeFrom32To1024)
     for (const uint32_t size : {32u, 60u, 100u, 324u, 1024u})
     {
         const HardScene box(closedBox(), std::vector<vec3>{kGoodProbes[0]}, size, 16);
-        expectBoxIsSeen("faces of " + std::to_string(size) + " texels", box.field, size < 64 ? 0.0012 : kHardlyAny, kHardlyAny);
+        expectBoxIsSeen("faces of " + std::to_string(size) + " texels", box.field,
+                        size == 32   ? 0.0012
+                        : size == 60 ? 0.0006
+                                     : kHardlyAny,
+                        kHardlyAny);
     }
 }
 

@@ -41,12 +41,12 @@ struct BoxScore
     }
 };
 
-void expectBox(const std::string& name, const BoxScore& score, double unknown)
+void expectBox(const std::string& name, const BoxScore& score, double off = kHardlyAny)
 {
     const auto rays = double(score.rays);
     expectAtMost(name + ": share that leaves the closed box", score.rays, score.miss / rays, 0.0);
-    expectAtMost(name + ": share of hits off by over 1 %", score.rays, score.off / rays, 0.0004);
-    expectAtMost(name + ": share unknown", score.rays, score.unknown / rays, unknown);
+    expectAtMost(name + ": share of hits off by over 1 %", score.rays, score.off / rays, off);
+    expectAtMost(name + ": share unknown", score.rays, score.unknown / rays, kHardlyAny);
 }
 
 TEST(RayHazards, BoundaryPastInfinityLeaksNothingInCornell)
@@ -72,7 +72,7 @@ TEST(RayHazards, RaysThatEndExactlyOnTheBoundsAreStopped)
         const vec3 d = glm::normalize(target - origin);
         score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf));
     }
-    expectBox("rays that end exactly on the bounds", score, kHardlyAny);
+    expectBox("rays that end exactly on the bounds", score);
 }
 
 TEST(RayHazards, RaysThroughAndFromTheProbeCentreAlongAxesAndDiagonals)
@@ -93,7 +93,7 @@ TEST(RayHazards, RaysThroughAndFromTheProbeCentreAlongAxesAndDiagonals)
         const vec3 origin = probe - back[i % 5] * d;
         score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf));
     }
-    expectBox("rays through and from probe centres", score, kHardlyAny);
+    expectBox("rays through and from probe centres", score);
 }
 
 TEST(RayHazards, RaysInThePlanesBetweenFacesOfAProbe)
@@ -117,7 +117,7 @@ TEST(RayHazards, RaysInThePlanesBetweenFacesOfAProbe)
         const vec3 origin = probe + off;
         score.add(walk.trace(origin, d), boxExit(origin, d, kBoxHalf));
     }
-    expectBox("rays in the planes between a probe's faces", score, kHardlyAny);
+    expectBox("rays in the planes between a probe's faces", score, 0.0004);
 }
 
 // A texel of these maps is 2 to 3 cm there: what starts nearer to a sheet than that may be taken for a start on the sheet's other side by a
@@ -143,12 +143,12 @@ TEST(RayHazards, OriginsBehindWavySheetsWithoutThickness)
         const char* name;
         float low, high; // metres off the sheet
         bool normals;    // whether rays know the side they start on
-        double bound;    // of leaks
+        double falseHits, leaks;
     };
-    for (const Case& test : {Case{"rays from 4 to 10 cm off curtains", 0.04f, 0.1f, false, 0.0045},
-                             Case{"rays from 0.3 to 3 cm off curtains", 0.003f, 0.03f, false, 0.05},
-                             Case{"rays from 0.3 to 3 cm off curtains, with the normal", 0.003f, 0.03f, true, 0.003},
-                             Case{"rays from 1 mm off curtains, with the normal", 0.001f, 0.001f, true, 0.005}})
+    for (const Case& test : {Case{"rays from 4 to 10 cm off curtains", 0.04f, 0.1f, false, 0.001, 0.0045},
+                             Case{"rays from 0.3 to 3 cm off curtains", 0.003f, 0.03f, false, 0.0038, 0.05},
+                             Case{"rays from 0.3 to 3 cm off curtains, with the normal", 0.003f, 0.03f, true, 0.0024, 0.0028},
+                             Case{"rays from 1 mm off curtains, with the normal", 0.001f, 0.001f, true, 0.0018, 0.005}})
     {
         static const auto scene = hardScene("curtains");
         std::vector<vec3> origins, directions, normals;
@@ -164,8 +164,8 @@ TEST(RayHazards, OriginsBehindWavySheetsWithoutThickness)
         if (test.normals) set.normals = normals;
         Walk<float> walk(scene->field, defaultQuality());
         const TraceScore score = scoreTraces(set, walkAll(walk, set));
-        expectAtMost(std::string(test.name) + ": false hits", kRays, score.falseHit, 0.0038);
-        expectAtMost(std::string(test.name) + ": leaks", kRays, score.leak, test.bound, 0.01);
+        expectAtMost(std::string(test.name) + ": false hits", kRays, score.falseHit, test.falseHits);
+        expectAtMost(std::string(test.name) + ": leaks", kRays, score.leak, test.leaks, 0.01);
     }
 }
 
@@ -229,7 +229,7 @@ TEST(RayHazards, EveryRayEndsWithinDerivedBounds)
         walk.trace(pointIn(random, vec3(-1.0f), vec3(5.0f, 4.0f, 5.0f)), glm::normalize(d));
     }
     expectAtMost("every ray ends: rays stopped by the limit of turns", walk.rays, double(walk.limitReached), 0.0);
-    expectAtMost("every ray ends: turns, share of the derived limit", walk.rays, walk.worstTurns, 1.0);
+    expectAtMost("every ray ends: turns, share of the derived limit", walk.rays, walk.worstTurns, 0.0022); // beyond 1 it would be stopped
     expectAtMost("every ray ends: times t falls outside a second opinion", walk.rays, double(walk.fallsOutsideOpinions), 0.0);
     expectAtMost("every ray ends: times t falls in a ray", walk.rays, walk.worstFalls, 2.0);
     expectAtMost("every ray ends: numbers that are not finite", walk.rays, double(walk.notFinite), 0.0);

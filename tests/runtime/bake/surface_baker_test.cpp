@@ -8,10 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bake/bake.h"
+#include "runtime/field/light_field_file.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
 #include "scene/triangle_rays.h"
 #include "tests/support/device.h"
+#include "tests/support/files.h"
 #include "tests/support/test_scenes.h"
 
 namespace sconce
@@ -231,6 +233,36 @@ TEST_F(SurfaceBake, CellsKeepTheSidesOfAWallApart)
     const float bright = lightAt(0.06f);
     EXPECT_GT(bright, 1.0f);
     for (const float x : {-0.06f, -0.1f, -0.2f, -0.5f, -1.0f}) EXPECT_LT(lightAt(x), 1e-4f * bright) << x;
+}
+
+// Where no frame reads it, surface light is made for what rays meet, and not kept.
+TEST_F(SurfaceBake, IsDroppedWhereNoFrameReadsIt)
+{
+    Scene scene;
+    scene.sky = vec3(1.0f);
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-3.0f, -0.2f, -3.0f), vec3(3.0f, 0.0f, 3.0f), mesh.material("grey", vec3(0.5f)));
+    const auto baked = [&](bool reads)
+    {
+        BakeSettings settings;
+        settings.resolution = 64;
+        settings.surfaceTexels = 26;
+        settings.octree.voxels = 16;
+        settings.readsSurfaces = reads;
+        BakeReport report;
+        auto field = bakeLightField(device.host(), scene, std::vector<vec3>{{0.1f, 1.0f, 0.2f}}, settings, {}, report);
+        if (!field) throw std::runtime_error(field.error().message);
+        return std::move(*field);
+    };
+    const FieldData read = baked(true), without = baked(false);
+    EXPECT_FALSE(read.surfaceLight.empty());
+    EXPECT_TRUE(without.surfaceLight.empty());
+    EXPECT_EQ(without.radiance, read.radiance);
+    const testing_support::TestFolder folder;
+    ASSERT_TRUE(saveField(without, folder / "f.sconce"));
+    const auto again = loadField(folder / "f.sconce");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->radiance, without.radiance);
 }
 
 // A square emitter over a plane: below its middle the cosine-weighted mean of its radiance is its form factor (Howell, "A Catalog of

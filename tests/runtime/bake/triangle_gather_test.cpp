@@ -2,11 +2,16 @@
 #include "runtime/bake/triangle_gather.h"
 
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
+#include "base/parallel.h"
+#include "bench/reference/path_tracer.h"
 #include "runtime/bake/bake.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
@@ -14,6 +19,7 @@
 #include "shaders/shared/pure.h"
 #include "tests/support/device.h"
 #include "tests/support/square_lamp.h"
+#include "tests/support/test_scenes.h"
 
 namespace sconce
 {
@@ -92,6 +98,122 @@ TEST_F(TriangleGathering, AGlowingBoxKeepsItsLight)
         EXPECT_NEAR(mean / truth, 1.0, surface.base > 0.8f ? 0.06 : 0.02)
             << "base " << surface.base << ", roughness " << surface.roughness << ", metallic " << surface.metallic;
     }
+}
+
+/// Mean radiance, green, that paths bring to the place that a probe sees towards `towards`, weighted as a texel's light is: by the cosine,
+/// and by what the diffuse lobe below a dielectric's coat takes.
+double arrivingByPaths(const RayScene& rays, const PathTracer& paths, vec3 probe, vec3 towards, uint64_t stream)
+{
+    constexpr int kAcross = 4, kUp = 2; // strata of the paths' first direction
+    const auto hit = rays.closest(probe, towards);
+    if (!hit) return NAN;
+    const ShadingPoint at = paths.shade(*hit, -towards);
+    const TangentFrame tangents = tangentFrame(at.normal);
+    double sum = 0.0;
+    for (int k = 0; k < kAcross * kUp; ++k)
+    {
+        Random random(11, stream, uint64_t(k));
+        const vec2 u = (vec2(k % kAcross, k / kAcross) + random.uniform2()) / vec2(kAcross, kUp);
+        const vec3 direction = glm::normalize(toWorld(tangents, sampleCosine(u)));
+        if (!(glm::dot(direction, at.geometricNormal) > 0.0f)) continue; // below the facet that stands for the curve
+        const float taken = Pure<float>::diffuseAlong(glm::dot(direction, at.normal), at.surface.roughness);
+        const PathLight light = paths.trace(at.position + rays.offset() * at.geometricNormal, direction, random);
+        sum += double(glm::mix(taken, 1.0f, at.surface.metallic)) * double(light.direct.g + light.diffuse.g + light.glossy.g);
+    }
+    return sum / (kAcross * kUp);
+}
+
+// A sphere about a point light, and one that glows, after as many bounces as the path tracer has. Rays that meet rough walls end there, so
+// that both count bounces alike; smoother walls send some of them on by their specular lobe, which no bounce counts: of those the light of
+// all bounces together is compared.
+TEST_F(TriangleGathering, EachBounceInASphereIsThePathTracers)
+{
+    struct Surface
+    {
+        float base, metallic, roughness;
+        double lamp, glow; // relative error allowed, with the point light and where the walls glow
+    };
+    const vec3 probe(0.3f, 0.2f, 0.1f);
+    // SHORT: 0.01 is aimed at for each. What metals send of a point light is what they would of light from all sides (bake_surface.comp); a
+    // rough metal, whose gain is its viewer's side's alone (brdf_text.h), sends a quarter less of light that falls steeply.
+    for (const Surface& surface : {Surface{0.7f, 0.0f, 1.0f, 0.01, 0.01},
+                                   {0.7f, 0.5f, 0.5f, 0.03, 0.03},
+                                   {0.9f, 1.0f, 1.0f, 0.35, 0.03},
+                                   {0.7f, 0.0f, 0.15f, 0.03, 0.03}})
+        for (const bool glows : {false, true})
+        {
+            Scene scene;
+            MeshBuilder mesh(scene);
+            const uint32_t wall = mesh.material("wall", vec3(surface.base), surface.roughness, surface.metallic);
+            mesh.sphere(vec3(0.0f), 2.0f, 64, 32, wall);
+            if (glows)
+                scene.materials[wall].emission = vec3(1.0f);
+            else
+                scene.lights.push_back(test::light(LightType::point, {0.4f, -0.3f, 0.5f}, {0, -1, 0}, 8.0f));
+            const RayScene rays = std::move(*RayScene::create(scene));
+            const bool counted = surface.roughness > 0.7f;
+            std::vector<uint32_t> asked{64};
+            if (counted) asked = glows ? std::vector<uint32_t>{8} : std::vector<uint32_t>{1, 2, 4, 8};
+            for (const uint32_t bounces : asked)
+            {
+                const std::vector<Texel> texels = texelsOf(bake(scene, {probe}, bounces), 0);
+                // At most as many scatterings as a texel's light has: of emission one a bounce, of a lamp's light one more.
+                const PathTracer paths(rays, {}, glows ? bounces - 2 : bounces - 1);
+                std::vector<double> traced(texels.size());
+                parallelFor(texels.size(), [&](size_t i)
+                            { traced[i] = arrivingByPaths(rays, paths, probe, glm::normalize(texels[i].position - probe), i); });
+                double sum = 0.0, squares = 0.0;
+                for (const Texel& texel : texels) sum += texel.light.g;
+                const double all = std::accumulate(traced.begin(), traced.end(), 0.0), count = double(texels.size());
+                for (const double one : traced) squares += (one - all / count) * (one - all / count);
+                const double ratio = sum / all, unsure = std::sqrt(squares) / all; // standard error of the paths
+                const double allowed = (glows ? surface.glow : surface.lamp) + 3.0 * unsure;
+                EXPECT_LT(unsure, 0.02);
+                const std::string name = "base " + std::to_string(surface.base) + ", metallic " + std::to_string(surface.metallic) +
+                                         ", roughness " + std::to_string(surface.roughness) + (glows ? ", glowing, " : ", point light, ") +
+                                         std::to_string(bounces) + " bounces";
+                RecordProperty(name, std::to_string(ratio) + " +- " + std::to_string(unsure));
+                EXPECT_NEAR(ratio, 1.0, allowed) << name;
+            }
+        }
+}
+
+// Tilted this way and that by a normal texture, too fine to be seen, a floor gets the mean of what its normals get: of a sun above it the
+// cosine of their tilt, of the sky the mean of what is over both of their planes. What it sends shows on the underside of a slab over it.
+TEST_F(TriangleGathering, AFloorOfManyNormalsSendsTheMeanOfTheirs)
+{
+    constexpr double kTilt = 40.0 * std::numbers::pi / 180.0;
+    const auto underside = [&](bool tilted, bool sunlit)
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        const uint32_t floor = mesh.material("floor", vec3(0.6f)), slab = mesh.material("slab", vec3(0.0f));
+        mesh.quad({-10, 0, -10}, {-10, 0, 10}, {10, 0, 10}, {10, 0, -10}, floor);
+        mesh.box({-0.5f, 1.0f, -0.5f}, {0.5f, 1.1f, 0.5f}, slab);
+        constexpr uint32_t kSide = 512;
+        Image image{"tilts", kSide, kSide, {}};
+        for (uint32_t i = 0; i < kSide * kSide; ++i)
+        {
+            const double x = tilted ? (i % 2 == 0 ? std::sin(kTilt) : -std::sin(kTilt)) : 0.0, z = tilted ? std::cos(kTilt) : 1.0;
+            for (const double value : {x, 0.0, z}) image.rgba.push_back(uint8_t(std::lround(127.5 * (value + 1.0))));
+            image.rgba.push_back(255);
+        }
+        scene.images.push_back(std::move(image));
+        scene.materials[floor].normalTexture.image = 0;
+        if (sunlit)
+            scene.lights.push_back(test::light(LightType::directional, {}, {0, -1, 0}, 3.0f));
+        else
+            scene.sky = vec3(1.0f);
+        double sum = 0.0;
+        int count = 0;
+        for (const Texel& texel : texelsOf(bake(scene, {vec3(0.1f, 0.5f, 0.2f), vec3(1.5f, 1.2f, 0.1f)}, 1), 0))
+            if (texel.normal.y < -0.9f) sum += double(texel.light.g), ++count;
+        EXPECT_GT(count, 100);
+        EXPECT_GT(report.gatherRays, uint64_t(count) * knobs::surfaceRays.value);
+        return sum / count;
+    };
+    EXPECT_NEAR(underside(true, true) / underside(false, true), std::cos(kTilt), 0.02);
+    EXPECT_NEAR(underside(true, false) / underside(false, false), 0.5 + 0.5 * std::cos(kTilt), 0.02);
 }
 
 // A mirror as floor before a black wall: the wall has the lamp's light and that of its image, and below a screen that keeps the lamp from
