@@ -5,9 +5,8 @@
 #include "bake_seen.glsl"
 #include "shared/color.h"
 
-// What a probe's texel shows, in one 4 x 32-bit texel: (root of the surface's hemispherical albedo, 3 x 10), (shading normal, and how
-// much of light straight from lights counts: packSeenNormal), (normal of the plane, and
-// how little the diffuse lobe takes of light along it: packSeenPlane), (emission, R11G11B10F). Both normals face the probe.
+// What a probe's texel shows, in one 4 x 32-bit texel: (root of the surface's hemispherical albedo, 3 x 10), (shading normal, and how much of light
+// straight from lights counts: packSeen), (geometric normal, octahedral 2 x 16), (emission, R11G11B10F). Both normals face the probe.
 layout(location = 0) in vec3 relative;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
@@ -37,6 +36,6 @@ void main()
     // As grazingOf() fits it, near enough for light from one side.
     float grazing = reflecting.roughness > kRoughestLobe ? 0.0 : (1.0 - reflecting.metallic) * 21.0 * (diffuseAlong(1.0, reflecting.roughness) - 1.0);
     float ofAll = 0.5 + 0.5 * together;
-    outSurface = uvec4(packRootOfColor(ofAll * albedo), packSeenNormal(shading, together / ofAll, shareToAllSides(reflecting)),
-                       packSeenPlane(geometric, grazing), packRadiance(surface.emission));
+    outSurface = uvec4(packRootOfColor(ofAll * albedo), packSeen(shading, together / ofAll, shareToAllSides(reflecting), grazing),
+                       packUnorm2x16(octahedralFromDirection(geometric)), packRadiance(surface.emission));
 }

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "bake_probe.glsl"
-#include "bake_seen.glsl"
 
 // Bake: resamples a probe's faces (as large as the octahedral map) into the octahedral chart: words, radiance and surfaces. A direction
 // meets the plane of the face texel it falls in; where that plane is grazing, the texel's own distance stands.
@@ -33,7 +32,7 @@ void main()
         push.words.word[index] = 0x7c00u;
         return;
     }
-    vec3 normal = seenPlane(texelFetch(surfaceImage, pixel, 0).z);
+    vec3 normal = directionFromOctahedral(unpackUnorm2x16(texelFetch(surfaceImage, pixel, 0).z));
     vec3 centreOfTexel = faceDirection(face, vec3(texelOnFace(texel, push.size), 1.0)) * (push.nearPlane / depth);
     float own = length(centreOfTexel);
     float facing = dot(normal, direction);

@@ -33,7 +33,7 @@ void main()
     }
     uvec4 seen = texelFetch(surfaceImage, pixel, 0);
     vec3 shading = seenNormal(seen.y);
-    vec3 geometric = seenPlane(seen.z);
+    vec3 geometric = directionFromOctahedral(unpackUnorm2x16(seen.z));
     vec3 emission = unpackRadiance(seen.w);
 
     float q = depth / push.nearPlane;
@@ -48,7 +48,7 @@ void main()
 
     vec3 albedo = unpackRootOfColor(seen.x);
     float straight = seenTogether(seen.y) * (kCoatsByRays ? seenToAllSides(seen.y) : 1.0);
-    vec3 irradiance = straight * deltaLight(p, shading, geometric, kCoatsByRays ? seenGrazing(seen.z) : 0.0);
+    vec3 irradiance = straight * deltaLight(p, shading, geometric, kCoatsByRays ? seenGrazing(seen.y) : 0.0);
     if (kAreaLight) irradiance += areaLight(p, shading, geometric);
     push.radiance.word[index] = packRadiance(emission + albedo * irradiance / kBrdfPi);
     if (!isNull(push.emitted)) push.emitted.word[index] = seen.w;

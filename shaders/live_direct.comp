@@ -11,23 +11,24 @@
 
 const uint kLightStream = 9u;
 
-vec3 given(uint i, vec3 point, vec3 normal, vec3 plane, out DeltaLight light)
+vec3 given(uint i, vec3 point, vec3 normal, vec3 plane, float grazing, out DeltaLight light)
 {
     GpuLight of = push.live.data.lights.light[i];
     light = deltaLightAt(of, of.type, point, 2.0 * field.diagonal);
-    return dot(plane, light.toLight) > 0.0 ? max(dot(normal, light.toLight), 0.0) * light.irradiance : vec3(0.0);
+    float cosine = max(dot(normal, light.toLight), 0.0);
+    return dot(plane, light.toLight) > 0.0 ? cosine * takenAlong(cosine, grazing) * light.irradiance : vec3(0.0);
 }
 
 /// Irradiance at a point, as much as reaches it.
 /// @param at  of its finer texel: what lights are drawn by
-vec3 directAt(vec3 point, vec3 normal, vec3 plane, uvec2 at)
+vec3 directAt(vec3 point, vec3 normal, vec3 plane, float grazing, uvec2 at)
 {
     DeltaLight light;
     float total = 0.0;
     uint giving = 0u;
     for (uint i = 0u; i < push.lights; ++i)
     {
-        float bright = luminance(given(i, point, normal, plane, light));
+        float bright = luminance(given(i, point, normal, plane, grazing, light));
         total += bright;
         giving += bright > 0.0 ? 1u : 0u;
     }
@@ -36,7 +37,7 @@ vec3 directAt(vec3 point, vec3 normal, vec3 plane, uvec2 at)
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < push.lights && total > 0.0; ++i)
     {
-        vec3 some = given(i, point, normal, plane, light);
+        vec3 some = given(i, point, normal, plane, grazing, light);
         float bright = luminance(some), times = bright > 0.0 ? 1.0 : 0.0;
         if (!all)
         {
@@ -68,7 +69,7 @@ void main()
             if (!isSameSurface(own.at, own.normal, surface, kSurfaceBend)) continue;
             // Off the surface by what the distance of its texel is packed to, besides.
             vec3 point = probeHeader(t.probe).centre + surface.at + (push.offset + 5e-4 * length(surface.at)) * surface.normal;
-            sum += directAt(point, unpackNormal8(known.normal), surface.normal, uvec2(at.x + kLivePoints * field.surfaceSize * uint(t.at.z), at.y));
+            sum += directAt(point, unpackNormal8(known.normal), surface.normal, unpackGrazing(known.normal), uvec2(at.x + kLivePoints * field.surfaceSize * uint(t.at.z), at.y));
             points += 1.0;
         }
     }

@@ -119,7 +119,8 @@ Result<Lighting> chooseLight(const RenderOptions& options, const FieldData& data
         auto taken = takeLiveLights(scene, own);
         if (!taken) return taken.error();
         made.lights = std::move(*taken);
-        made.moves = !data.live.lit || !options.dims.empty() || !options.sunPath.empty() || !std::ranges::equal(made.lights, data.live.lights, sameLight);
+        made.moves = !data.live.lit || !options.dims.empty() || !options.sunPath.empty() ||
+                     !std::ranges::equal(made.lights, data.live.lights, sameLight);
     }
     if (!options.dims.empty())
     {

@@ -73,9 +73,9 @@ struct BakeReport
 };
 
 /// Bakes a light field: what each probe sees, rasterised, lit directly by every light of the scene and then, bounce by bounce, by the light
-/// gathered at the surfaces that its texels show (without surface texels: by the probes' irradiance). A probe's maps before the first bounce
-/// don't depend on the other probes. Same input, same driver: same bytes.
-/// What rays meet is as bright to all sides: a probe's texel holds one radiance for all directions.
+/// gathered at the surfaces that its texels show (without surface texels: by the probes' irradiance). A probe's maps before the first
+/// bounce don't depend on the other probes. Same input, same driver: same bytes. What rays meet is as bright to all sides: a probe's texel
+/// holds one radiance for all directions.
 /// @param probes  world, metres; at least one, at most 65,535. One that stands on a surface, or nearer to it than 2e-4 of the diagonal, is
 /// moved
 ///                off it (runtime/bake/probe_clearance.h) where the probes are no grid

@@ -384,7 +384,8 @@ struct Gatherer : LightFieldTwin<float>
     uint directOf(const gpu::SurfaceTexel& known, const Place& place) const
     {
         const float onward = shareOnward(place.surface, luminance(hemisphericalSpecular(place.surface)));
-        return packSharedExponent(straight[place.material] * unpackRootOfColor(known.albedo) / (1.0f - onward));
+        return packSharedExponent(straight[place.material] * shareToAllSides(place.surface) * unpackRootOfColor(known.albedo) /
+                                  (1.0f - onward));
     }
 
     /// A patch seen from within some of its widths is no disc on its axis: there rays that meet its triangle count.

@@ -186,8 +186,10 @@ Json probeSets()
         grid.push_back({{"position", {-7.5 + 3.0 * x, 0.5 + y, -4.0 + 4.0 * z}},
                         {"why", "grid point " + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z)}});
     }
-    return {{"optimised-54", {{"method", "sdf"}, {"seconds", 12.0}, {"coverage", {{"rays", 0.997}, {"area", 0.98}}}, {"probes", placed}}},
-            {"grid-54", {{"method", "grid"}, {"grid", {6, 3, 3}}, {"seconds", 2.5}, {"coverage", {{"rays", 0.917}, {"area", 0.81}}}, {"probes", grid}}}};
+    return {
+        {"optimised-54", {{"method", "sdf"}, {"seconds", 12.0}, {"coverage", {{"rays", 0.997}, {"area", 0.98}}}, {"probes", placed}}},
+        {"grid-54",
+         {{"method", "grid"}, {"grid", {6, 3, 3}}, {"seconds", 2.5}, {"coverage", {{"rays", 0.917}, {"area", 0.81}}}, {"probes", grid}}}};
 }
 
 Json analysisOf(const std::vector<Json>& points)
