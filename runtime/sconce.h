@@ -272,7 +272,7 @@ struct BakeDesc
     std::string effects = "auto";             // as planEffects()
     const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
     uint32_t liveLinks = knobs::liveLinks.value; // of each surface texel, so that LiveLight moves lights; 0: they stay
-    bool lit = true; // false: geometry and material alone, with live links: no light until LiveLight has recorded
+    bool lit = true;                    // false: geometry and material alone, with live links: no light until LiveLight has recorded
     std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked
 };
 
