@@ -87,7 +87,6 @@ public:
     Status run(const Options& options)
     {
         // Settled first, which all ways end at.
-        std::vector<std::vector<vec3>> ours;
         if (auto status = switchedOn(0, 0, nullptr); !status) return status;
         for (const double share : options.shares)
         {
@@ -167,7 +166,7 @@ private:
                                      way.name, framesTo(way, 0.5), framesTo(way, 0.95), framesTo(way, 0.99), errorOnTheWay(way));
     }
 
-    /// Mean of the error over as many frames as the slowest way takes... of one way until 95 % of its light is there.
+    /// Mean of a way's error over the frames before 95 % of its light is there.
     static double errorOnTheWay(const Way& way)
     {
         double sum = 0.0;

@@ -34,7 +34,7 @@ std::string costOf(std::string_view name)
         return "Rays of the bake; in a frame a shadowed look-up a pixel for each that is kept as a lamp, and nothing for the others.";
     if (name == "sky") return "Rays of the bake, nothing in a frame.";
     if (name == "diffuse")
-        return fmt::format("A pass over diffuse tiles of about 24 reads a look-up, one for 2x2 pixels where they are of one flat surface, "
+        return fmt::format("A pass over diffuse tiles of about 27 reads a look-up, one for 2x2 pixels where they are of one flat surface, "
                            "{}, {}.",
                            bytes(kImageBytes, "pixel"), bytes(surfaceLight, "probe"));
     if (name == "rough")
