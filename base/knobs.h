@@ -688,6 +688,16 @@ inline constexpr Knob<uint32_t> paths{.name = "samples",
                                       .unit = "paths a pixel",
                                       .what = "Paths a pixel",
                                       .buys = "noise falls with the square root, time grows in proportion"};
+inline constexpr Knob<double> pathsUntil{
+    .name = "until",
+    .option = "reference --until",
+    .member = "KeepReference::until",
+    .value = 0.0,
+    .least = 0.0,
+    .most = 1.0,
+    .unit = "relMSE",
+    .what = "Adds batches of paths, each as many as all before, until the picture's own relMSE by its noise, of "
+            "both indirect terms, is no more; 0: one batch"};
 inline constexpr Knob<uint32_t> pathBounces{.name = "bounces",
                                             .option = "reference --bounces",
                                             .member = "ReferenceSettings::bounces",
@@ -798,6 +808,16 @@ inline constexpr Knob<uint32_t> referencePaths{.name = "referencePaths",
                                                .most = paths.most,
                                                .unit = paths.unit,
                                                .what = "Paths a pixel of the reference"};
+inline constexpr Knob<double> referenceUntil{
+    .name = "referenceUntil",
+    .option = "bench --until",
+    .member = "BenchSettings::referenceUntil",
+    .value = pathsUntil.value,
+    .least = pathsUntil.least,
+    .most = pathsUntil.most,
+    .unit = pathsUntil.unit,
+    .what = "Adds paths to the reference until its own relMSE by its noise, of both indirect terms, is no more; 0: "
+            "none are added"};
 inline constexpr Knob<uint64_t> benchSeed{.name = "seed",
                                           .option = "bench --seed",
                                           .member = "BenchSettings::seed",

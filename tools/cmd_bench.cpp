@@ -156,14 +156,9 @@ public:
 /// What the points of a guard are measured with, and back.
 Json guardOptions(const BenchSettings& settings, const PlanSettings& plan)
 {
-    return {{"size", {settings.width, settings.height}},
-            {"rays", settings.rays},
-            {"spp", settings.referencePaths},
-            {"frames", settings.frames},
-            {"probes", plan.probes},
-            {"resolution", plan.ours.resolution},
-            {"bounces", plan.ours.bounces},
-            {"knobs", plan.knobs}};
+    return {{"size", {settings.width, settings.height}}, {"rays", settings.rays},        {"spp", settings.referencePaths},
+            {"until", settings.referenceUntil},          {"frames", settings.frames},    {"probes", plan.probes},
+            {"resolution", plan.ours.resolution},        {"bounces", plan.ours.bounces}, {"knobs", plan.knobs}};
 }
 
 void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings& plan)
@@ -172,6 +167,7 @@ void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings&
     settings.height = options["size"][1];
     settings.rays = options["rays"];
     settings.referencePaths = options["spp"];
+    settings.referenceUntil = options.value("until", knobs::referenceUntil.value); // older guards have none
     settings.frames = options["frames"];
     plan.probes = options["probes"];
     plan.ours.resolution = options["resolution"];
@@ -298,6 +294,7 @@ void addBenchCommand(CLI::App& app, Context& context)
                      described("Write such a baseline of the scenes, ours and b0plus, instead of results", words("none")))
         ->type_name("FILE");
     addKnob(bench, "--spp", settings.referencePaths, knobs::referencePaths);
+    addKnob(bench, "--until", settings.referenceUntil, knobs::referenceUntil, "RELMSE");
     addKnob(bench, "--seed", settings.seed, knobs::benchSeed);
     addDevice(bench, options->device);
     onChosen(bench, context, options,

@@ -7,6 +7,8 @@
 
 #include "bench/reference/metrics.h"
 #include "bench/reference/reference.h"
+#include "bench/sweep/kept_reference.h"
+#include "bench/sweep/keys.h"
 #include "tools/light_group_options.h"
 #include "tools/pictures.h"
 
@@ -26,8 +28,22 @@ struct ReferenceOptions
     CameraOptions camera;
     PictureOptions pictures;
     ReferenceSettings settings;
+    double until = knobs::pathsUntil.value;
+    std::string keep;
     std::vector<std::string> groups, dims;
 };
+
+/// Traced in batches until its noise is small enough, each kept, or at once.
+Result<Reference> traced(const Scene& scene, const ReferenceSettings& settings, const ReferenceOptions& options, uint64_t& paths,
+                         const Progress& progress)
+{
+    paths = settings.samples;
+    if (options.keep.empty()) return renderReference(scene, settings, progress);
+    if (std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
+    const Result<RayScene> rays = RayScene::create(scene);
+    if (!rays) return rays.error();
+    return keptReference(*rays, keyOf(scene), settings, {options.keep, options.until}, paths, progress);
+}
 
 int runReference(const ReferenceOptions& options, const Context& context)
 {
@@ -44,12 +60,15 @@ int runReference(const ReferenceOptions& options, const Context& context)
     if (!camera) return fail(camera.error());
     ReferenceSettings settings = options.settings;
     settings.camera = *camera;
-    Result<Reference> reference = renderReference(*scene, settings, consoleProgress(context));
+    if (options.until > 0.0 && options.keep.empty())
+        return fail(ErrorCode::badArgument, "--until adds batches of paths, which are kept; give the folder with --keep.");
+    uint64_t paths = 0;
+    Result<Reference> reference = traced(*scene, settings, options, paths, consoleProgress(context));
     if (!reference) return fail(reference.error());
     if (reference->nonFinitePaths > 0)
         note(context, fmt::format("Note: {} paths were not finite and were left out.", reference->nonFinitePaths));
     Json json;
-    json["spp"] = settings.samples;
+    json["spp"] = paths;
     json["bounces"] = settings.bounces;
     json["estimated_relmse"] = reference->estimatedRelMse;
     json["non_finite_paths"] = reference->nonFinitePaths;
@@ -58,7 +77,7 @@ int runReference(const ReferenceOptions& options, const Context& context)
     if (context.json)
         print(json);
     else
-        std::cout << options.pictures.output << ": " << settings.width << "x" << settings.height << ", " << settings.samples
+        std::cout << options.pictures.output << ": " << settings.width << "x" << settings.height << ", " << paths
                   << " paths a pixel, estimated relMSE " << json["estimated_relmse"] << ", " << json["seconds"] << " s, "
                   << json["peak_rss_mb"] << " MB" << std::endl;
     return exitOk;
@@ -157,6 +176,14 @@ void addReferenceCommands(CLI::App& app, Context& context)
     options->camera.add(reference);
     addSize(reference, settings.width, settings.height);
     addKnob(reference, "--spp", settings.samples, knobs::paths);
+    addKnob(reference, "--until", options->until, knobs::pathsUntil, "RELMSE");
+    reference
+        ->add_option(
+            "--keep", options->keep,
+            described("Folder in which pictures are kept, by all that they depend on: the same is not traced twice, and --until goes on "
+                      "where it was interrupted",
+                      words("none")))
+        ->type_name("FOLDER");
     addKnob(reference, "--bounces", settings.bounces, knobs::pathBounces);
     addKnob(reference, "--roughness", settings.roughness, knobs::roughness, "R");
     addKnob(reference, "--seed", settings.seed, knobs::pathSeed);

@@ -5,6 +5,7 @@
     python3 bench/pages/bench_rows.py knobs RESULTS.json        bench/results/knobs.json: one scene's knobs
     bench/pages/leaks_sheet.sh                                  bench/results/walls.json
     bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
+    bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
 """
@@ -277,8 +278,23 @@ def walls(arguments):
           ["dark_light: the mean of the dark room's own picture, ours over the reference's"], rows)
 
 
+def steps(arguments):
+    at, name, count, steps, views = arguments[0], arguments[1], arguments[2], arguments[3].split(","), int(arguments[4])
+    race = {Path(entry["field"]).name.split(".")[-2]: entry for entry in json.loads(Path(at + ".race.json").read_text()) if "field" in entry}
+    placed = {line.split()[0]: line.split() for line in Path(at + ".placed.txt").read_text().splitlines() if line.split()[:1] and line.split()[0] in steps}
+    row = {"label": f"{name}, {count}"}
+    for step in steps:
+        light = [json.loads(Path(f"{at}.{step}.{i}.json").read_text()) for i in range(views)]
+        mean = lambda key: sum(view[key] for view in light) / views
+        key, ray = slug(step), race[step]
+        row |= {f"{key}_wrong": f"{100 * (1 - ray['right_1']):.2f}", f"{key}_wrong_02": f"{100 * (1 - ray['right_02']):.2f}", f"{key}_unsure": f"{100 * ray['right_1_unsure']:.2f}",
+                f"{key}_relmse": f"{mean('relmse'):.5f}", f"{key}_flip": f"{mean('flip'):.3f}", f"{key}_means": " ".join(f"{view['mean']:.3f}" for view in light),
+                f"{key}_area": placed[step][3], f"{key}_quality": placed[step][6], f"{key}_seconds": placed[step][7]}
+    print(f'  "{slug(name)}": {json.dumps(row)},', flush=True)
+
+
 if __name__ == "__main__":
-    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls}
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -139,7 +139,7 @@ struct Frame
         return pinhole.direction(static_cast<float>(x) + within.x, static_cast<float>(y) + within.y, settings.width, settings.height);
     }
     /// By pixel and path, not by thread: the picture is the same for any number of threads.
-    Random randomOf(size_t pixel, uint32_t path) const { return Random(settings.seed, pixel, path); }
+    Random randomOf(size_t pixel, uint32_t path) const { return Random(settings.seed, pixel, settings.firstPath + path); }
 
     /// Of the surface at the pixel's centre, whose textures are those that the paths see.
     void guides(uint32_t x, uint32_t y, vec3 centre)
@@ -219,7 +219,31 @@ struct Frame
     }
 };
 
+/// Layers in which a value is a direction, or the same in every picture.
+bool isOfPaths(std::string_view layer)
+{
+    return layer != "depth" && layer != "normal";
+}
+
 } // namespace
+
+Reference joined(const Reference& a, uint64_t pathsA, const Reference& b, uint64_t pathsB)
+{
+    Reference all = a;
+    const double share = double(pathsB) / double(pathsA + pathsB);
+    for (Layer& layer : all.images.layers)
+    {
+        const Layer* other = isOfPaths(layer.name) ? b.images.find(layer.name) : nullptr;
+        if (!other) continue;
+        for (size_t i = 0; i < layer.pixels.size(); ++i)
+            layer.pixels[i] = float((1.0 - share) * double(layer.pixels[i]) + share * double(other->pixels[i]));
+    }
+    // Variances of means: of independent paths they add up by the squares of their shares.
+    for (double Reference::*error : {&Reference::estimatedRelMse, &Reference::estimatedRelMseDiffuse, &Reference::estimatedRelMseGlossy})
+        all.*error = (1.0 - share) * (1.0 - share) * a.*error + share * share * b.*error;
+    all.nonFinitePaths += b.nonFinitePaths;
+    return all;
+}
 
 Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress)
 {

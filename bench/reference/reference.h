@@ -20,6 +20,7 @@ struct ReferenceSettings
     uint32_t height = knobs::height.value;       // pixels
     uint32_t samples = knobs::paths.value;       // paths a pixel; noise falls with the square root
     uint32_t bounces = knobs::pathBounces.value; // times baked light is re-injected: a path scatters at most bounces + 2 times
+    uint64_t firstPath = 0;                      // of each pixel: others are another picture's, see joined()
     uint64_t seed = knobs::pathSeed.value;       // same seed, same bytes, whatever the number of threads
     std::optional<float> roughness;              // [0,1]; set: the roughness of every surface
     bool guides = true;                          // depth, normal, albedo and roughness, too: one more ray a pixel; false: left out
@@ -46,6 +47,10 @@ struct Reference
 /// Path traces the scene: next-event estimation to lights and emitters, multiple importance sampling with the reflection model of
 /// shaders/shared/brdf.h, threads by TBB. Errors: badArgument (names the field), badInput, outOfMemory, cancelled.
 Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress = {});
+/// What one picture of all paths would be, but for rounding. Of two with the same settings but for `samples` and `firstPath`, both
+/// multiples of 4 where they have parts.
+/// @param pathsA, pathsB  a pixel
+Reference joined(const Reference& a, uint64_t pathsA, const Reference& b, uint64_t pathsB);
 /// The same without building the scene's hierarchy anew; the scene must be a valid one.
 Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress = {});
 

@@ -15,6 +15,7 @@
 #include "bench/race/ray_file.h"
 #include "bench/race/scene_rays.h"
 #include "bench/reference/metrics.h"
+#include "bench/sweep/kept_reference.h"
 #include "bench/sweep/keys.h"
 #include "bench/sweep/picture_files.h"
 #include "bench/sweep/point_json.h"
@@ -101,7 +102,7 @@ std::string SceneBench::pointKey(const PlannedPoint& point) const
                 {"size", {s.width, s.height}},
                 {"camera", {toJson(camera.eye), toJson(camera.forward), toJson(camera.up), camera.verticalFov}},
                 {"rays", s.rays},
-                {"reference", {s.referencePaths, s.referenceBounces}},
+                {"reference", {s.referencePaths, s.referenceBounces, s.referenceUntil}},
                 {"seed", s.seed},
                 {"frames", s.frames}};
     if (point.settings.frame.roughness) all["roughness"] = *point.settings.frame.roughness;
@@ -216,25 +217,13 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
     settings.parts = true;       // so that its noise is no part of any error
     settings.roughness = roughness;
     settings.camera = camera;
-    Json all = {{"build", desc.build},
-                {"scene", fields.sceneKey()},
-                {"size", {settings.width, settings.height}},
-                {"camera", {toJson(camera.eye), toJson(camera.forward), toJson(camera.up), camera.verticalFov}},
-                {"paths", {settings.samples, settings.bounces, settings.seed}}};
-    if (roughness) all["roughness"] = *roughness;
-    const std::string key = keyOf(all);
-    if (std::optional<Json> known = readJson(fields.cached("references", key, ".json")))
-        if (auto images = readExr(fields.cached("references", key, ".exr")))
-        {
-            referenceJson = std::move(*known);
-            referenceImages = std::move(*images);
-            return writeReferencePictures();
-        }
     if (auto status = makeTruth(); !status) return status;
     const double begin = secondsNow();
-    auto reference = renderReference(*truth, settings, progress);
+    uint64_t paths = 0;
+    auto reference = keptReference(*truth, fields.sceneKey(), settings,
+                                   {fields.cached("references", "", "").parent_path(), desc.settings.referenceUntil}, paths, progress);
     if (!reference) return reference.error();
-    referenceJson = {{"spp", settings.samples},
+    referenceJson = {{"spp", paths},
                      {"bounces", settings.bounces},
                      {"seconds", secondsNow() - begin},
                      {"estimated_relmse",
@@ -242,8 +231,6 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
                        {"diffuse", numberOrNull(reference->estimatedRelMseDiffuse)},
                        {"glossy", numberOrNull(reference->estimatedRelMseGlossy)}}}};
     referenceImages = std::move(reference->images);
-    if (auto status = writeExr(referenceImages, fields.cached("references", key, ".exr")); !status) return status;
-    if (auto status = writeText(fields.cached("references", key, ".json"), referenceJson.dump()); !status) return status;
     return writeReferencePictures();
 }
 

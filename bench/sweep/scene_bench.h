@@ -22,6 +22,7 @@ struct BenchSettings
     uint32_t rays = knobs::judgedRays.value;                                     // glossy rays judged against Embree
     uint32_t frames = knobs::timedFrames.value;                                  // timed, each point in turn
     uint32_t warmUp = knobs::warmUp.value;                                       // frames before them
+    double referenceUntil = knobs::referenceUntil.value;                         // own relMSE by its noise
     uint32_t referencePaths = knobs::referencePaths.value;                       // a pixel
     uint32_t referenceBounces = knobs::referenceBounces.value; // a truth with more bounces than any light field that is measured
     uint64_t seed = knobs::benchSeed.value;                    // of rays and paths

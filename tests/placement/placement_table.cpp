@@ -1,9 +1,9 @@
 // What a placement is worth beside its yardstick, in one run and on the same samples:
 //   sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX] [--seed N]
 // Rows: yardstick, grid, skeleton (alone), chosen (greedy and exchange), gradient, gibbs, stochastic
-// (that and refined so; gradient is what `sconce place` does), balls (chosen with the other skeleton), bound (what any legal position at
-// all sees). The grid is the best of `place --fit-grid`. Each line: coverage of ray hits and of area in per cent, cosine and distance of
-// the best view (medians), seconds. --save writes PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
+// (that and refined so; gradient is what `sconce place` does), balls, balls-gradient (with the other skeleton), bound (what any legal
+// position at all sees). The grid is the best of `place --fit-grid`. Each line: coverage of ray hits and of area in per cent, cosine and
+// distance of the best view (medians), seconds. --save writes PREFIX-COUNT-ROW.json, for `sconce bake` and sconce_ray_accuracy.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -150,6 +150,7 @@ struct Table
         for (const auto& [name, refine] : refinements)
             failures += line(name, count, [&] { return ours(count, PlaceSettings::Method::sdf, refine); });
         failures += line("balls", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::none); });
+        failures += line("balls-gradient", count, [&] { return ours(count, PlaceSettings::Method::balls, Refine::gradient); });
         return failures;
     }
 };
