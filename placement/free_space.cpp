@@ -397,11 +397,14 @@ float passageRadius(const FreeSpace& space, const std::vector<uint32_t>& seeds)
     return cells ? std::min({kPassage * float(sum / double(cells)), kWidestPassage, 0.9f * widest}) : 0.0f;
 }
 
-/// Whether one can stand below a point, no more than `height` metres down.
-bool standsOn(const Visibility& visibility, vec3 point, float height)
+/// Whether one can stand below a point, no more than open.ground metres down.
+bool standsOn(const Visibility& visibility, vec3 point, const OpenSpace& open)
 {
-    RayHit hit;
-    return visibility.cast(point, vec3(0.0f, -1.0f, 0.0f), hit) && hit.t <= height && !hit.back && hit.normal.y >= kWalkable;
+    constexpr vec3 kDown(0.0f, -1.0f, 0.0f);
+    RayHit hit, walk;
+    const bool met = visibility.cast(point, kDown, hit);
+    if (!open.walk) return met && hit.t <= open.ground && !hit.back && hit.normal.y >= kWalkable;
+    return open.walk->cast(point, kDown, walk) && walk.t <= open.ground && !(met && hit.t < walk.t - kUnderGround);
 }
 
 /// Rule 4: adds what was reached near the ground, or takes what was reached in the box.
@@ -417,7 +420,7 @@ void addOpen(FreeSpace& space, const std::vector<uint8_t>& reached, const OpenSp
                           if (open.box)
                               space.reachable[at] = reached[at] && inBox(centre);
                           else if (!space.reachable[at] && reached[at])
-                              space.reachable[at] = standsOn(visibility, centre, open.ground);
+                              space.reachable[at] = standsOn(visibility, centre, open);
                       });
 }
 

@@ -68,6 +68,8 @@ std::string faultOf(const PlaceSettings& settings)
             return fmt::format("the inside point ({}, {}, {}) is not finite.", point.x, point.y, point.z);
     if (!(settings.open.ground >= 0.0f && settings.open.ground <= 1e6f))
         return fmt::format("open ground counts up to {} m; give 0 to 1e6.", settings.open.ground);
+    if (settings.open.walk && !(settings.open.ground > 0.0f))
+        return "a mesh to walk on is given, but no height above it that counts; give open.ground.";
     if (settings.open.box && !(finite(settings.open.box->low) && finite(settings.open.box->high) && !settings.open.box->empty()))
         return "the box of the space that counts is empty or not finite; give its low corner, then its high one.";
     if (ownGrid && settings.method != PlaceSettings::Method::grid) return "grid is given but the method is not grid; choose one.";

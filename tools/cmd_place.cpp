@@ -7,6 +7,7 @@
 #include "bench/reference/image_io.h"
 #include "placement/place.h"
 #include "runtime/field/field_data.h"
+#include "scene/scene_gltf.h"
 #include "tools/quality_option.h"
 
 namespace sconce::tools
@@ -19,6 +20,7 @@ struct PlaceOptions
 {
     SceneOptions scene;
     PlaceSettings settings;
+    std::string walk; // file of settings.open.walk
     std::string output;
     std::string explain;
     std::string pins;
@@ -40,23 +42,39 @@ Result<uint32_t> countFor(uint64_t memory, uint32_t resolution)
 }
 
 /// Throws what CLI11 ends as a usage error.
-void readSpace(const std::string& text, OpenSpace& open)
+/// @param walk  out: file of the mesh to walk on, empty without
+void readSpace(const std::string& text, OpenSpace& open, std::string& walk)
 {
     open = {};
+    walk.clear();
     if (text == "enclosed") return;
-    constexpr std::string_view kGround = "ground:";
-    const bool ground = text.starts_with(kGround);
-    const Result<std::vector<float>> n = parseNumbers(ground ? text.substr(kGround.size()) : text, {ground ? size_t(1) : size_t(6)});
-    if (!n) throw CLI::ValidationError("--space", n.error().message);
-    if (ground)
-        open.ground = (*n)[0];
+    const auto numbers = [](const std::string& of, size_t count)
+    {
+        Result<std::vector<float>> n = parseNumbers(of, {count});
+        if (!n) throw CLI::ValidationError("--space", n.error().message);
+        return std::move(*n);
+    };
+    constexpr std::string_view kGround = "ground:", kWalk = "walk:";
+    if (text.starts_with(kGround))
+        open.ground = numbers(text.substr(kGround.size()), 1)[0];
+    else if (text.starts_with(kWalk))
+    {
+        const size_t end = std::min(text.find(':', kWalk.size()), text.size());
+        open.ground = numbers(text.substr(kWalk.size(), end - kWalk.size()), 1)[0];
+        walk = text.substr(std::min(end + 1, text.size()));
+        if (walk.empty()) throw CLI::ValidationError("--space", "walk needs a height and a mesh, as in walk:2.5:mesh.glb");
+    }
     else
-        open.box = Bounds{{(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}};
+    {
+        const std::vector<float> n = numbers(text, 6);
+        open.box = Bounds{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    }
 }
 
 /// As --space takes it.
-std::string nameOf(const OpenSpace& open)
+std::string nameOf(const OpenSpace& open, const std::string& walk)
 {
+    if (!walk.empty()) return fmt::format("walk:{}:{}", open.ground, walk);
     if (open.ground > 0.0f) return fmt::format("ground:{}", open.ground);
     if (!open.box) return "enclosed";
     const vec3 low = open.box->low, high = open.box->high;
@@ -101,6 +119,18 @@ int runPlace(const PlaceOptions& options, const Context& context)
     }
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
+    std::optional<Scene> walk;
+    std::optional<Visibility> onWalk;
+    if (!options.walk.empty())
+    {
+        Result<Scene> mesh = loadGltf(options.walk);
+        if (!mesh) return fail(mesh.error());
+        walk = std::move(*mesh);
+        Result<Visibility> seen = Visibility::build(*walk);
+        if (!seen) return fail(seen.error());
+        onWalk.emplace(std::move(*seen));
+        settings.open.walk = &*onWalk;
+    }
     PlaceReport report;
     Result<ProbeSet> set = placeProbes(*scene, settings, report, consoleProgress(context));
     if (!set) return fail(set.error());
@@ -124,7 +154,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     json["median_distance"] = report.medianDistance;
     json["reachable"] = {
         {"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
-    json["space"] = nameOf(options.settings.open);
+    json["space"] = nameOf(options.settings.open, options.walk);
     json["surface_left_out"] = report.surfaceLeftOut;
     json["voxel"] = report.voxel;
     json["clearance"] = report.clearance;
@@ -139,8 +169,9 @@ int runPlace(const PlaceOptions& options, const Context& context)
         std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
                   << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area "
                   << 100.0f * report.coverageArea << " %\n"
-                  << "reachable space (" << nameOf(options.settings.open) << "): " << report.reachableVolume << " m^3, cells of "
-                  << report.voxel << " m; it leaves out " << 100.0f * report.surfaceLeftOut << " % of the scene's surface\n"
+                  << "reachable space (" << nameOf(options.settings.open, options.walk) << "): " << report.reachableVolume
+                  << " m^3, cells of " << report.voxel << " m; it leaves out " << 100.0f * report.surfaceLeftOut
+                  << " % of the scene's surface\n"
                   << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
     }
     return exitOk;
@@ -205,12 +236,14 @@ void addPlaceCommand(CLI::App& app, Context& context)
         ->type_name("X,Y,Z");
     command
         ->add_option_function<std::string>(
-            "--space", [&settings](const std::string& text) { readSpace(text, settings.open); },
+            "--space", [options = options.get()](const std::string& text) { readSpace(text, options->settings.open, options->walk); },
             described(
                 "The space that counts: enclosed is rooms, courts and streets; ground:METRES also what lies no higher than that above any "
-                "ground one can stand on, out to the scene's box; X,Y,Z,X,Y,Z all free space in that box and nothing else",
+                "ground one can stand on, out to the scene's box; walk:METRES:FILE above the triangles of a glTF instead, as a navigation "
+                "mesh has "
+                "them; X,Y,Z,X,Y,Z all free space in that box and nothing else",
                 words("enclosed")))
-        ->type_name("enclosed|ground:METRES|BOX");
+        ->type_name("enclosed|ground:METRES|walk:METRES:FILE|BOX");
     command
         ->add_option_function<std::string>(
             "--explain", [options = options.get()](const std::string& file) { options->explain = file, options->settings.explain = true; },

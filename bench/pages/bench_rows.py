@@ -284,12 +284,13 @@ def steps(arguments):
     placed = {line.split()[0]: line.split() for line in Path(at + ".placed.txt").read_text().splitlines() if line.split()[:1] and line.split()[0] in steps}
     row = {"label": f"{name}, {count}"}
     for step in steps:
-        light = [json.loads(Path(f"{at}.{step}.{i}.json").read_text()) for i in range(views)]
-        mean = lambda key: sum(view[key] for view in light) / views
         key, ray = slug(step), race[step]
         row |= {f"{key}_wrong": f"{100 * (1 - ray['right_1']):.2f}", f"{key}_wrong_02": f"{100 * (1 - ray['right_02']):.2f}", f"{key}_unsure": f"{100 * ray['right_1_unsure']:.2f}",
-                f"{key}_relmse": f"{mean('relmse'):.5f}", f"{key}_flip": f"{mean('flip'):.3f}", f"{key}_means": " ".join(f"{view['mean']:.3f}" for view in light),
                 f"{key}_area": placed[step][3], f"{key}_quality": placed[step][6], f"{key}_seconds": placed[step][7]}
+        if not views: continue
+        light = [json.loads(Path(f"{at}.{step}.{i}.json").read_text()) for i in range(views)]
+        mean = lambda key: sum(view[key] for view in light) / views
+        row |= {f"{key}_relmse": f"{mean('relmse'):.5f}", f"{key}_flip": f"{mean('flip'):.3f}", f"{key}_means": " ".join(f"{view['mean']:.3f}" for view in light)}
     print(f'  "{slug(name)}": {json.dumps(row)},', flush=True)
 
 

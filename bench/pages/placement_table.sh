@@ -3,7 +3,7 @@
 # the shares of RAYS glossy rays not within 1 % and within 0.2 % of the diagonal; light is diffuse relMSE over a scene's views, without the
 # reference's noise, and mean. Prints the rows of bench/results/placement_steps.json.
 # placement_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE, TABLE, ACCURACY=the programs, built when not given, RAYS=n
-# [100000], SIZE=WxH of the pictures [320x180], RESOLUTION=texels [256], SPP=paths a pixel [256], STEPS=rows, OUT=folder, whose references are kept [out/steps].
+# [100000], SIZE=WxH of the pictures [320x180], RESOLUTION=texels [256], SPP=paths a pixel [256], STEPS=rows, LIGHT=no judges rays alone, OUT=folder, whose references are kept [out/steps].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source bench/pages/views.sh
@@ -21,12 +21,14 @@ for entry in "${list[@]}"; do
     name=$(basename "${scene%.gl*}")
     [[ -f $scenes/$scene ]] && scene=$scenes/$scene
     at=$out/$name
-    mapfile -t views < <(views_of "$name")
+    views=() baked=(--bounces 0 --surface-texels 0)
+    [[ ${LIGHT:-yes} == no ]] || mapfile -t views < <(views_of "$name")
+    [[ ${LIGHT:-yes} == no ]] || baked=()
     read -ra light <<< "$(light_of "$name")"
     "$table" "$scene" "$count" --rows "$steps" --save "$at" > "$at.placed.txt"
     fields=()
     for step in ${steps//,/ }; do
-        "$sconce" bake "$scene" "${light[@]}" --probes "$at-$count-$step.json" --resolution "$resolution" -o "$at.$step.sconce" --quiet > /dev/null
+        "$sconce" bake "$scene" "${light[@]}" --probes "$at-$count-$step.json" --resolution "$resolution" "${baked[@]}" -o "$at.$step.sconce" --quiet > /dev/null
         fields+=(--field "$at.$step.sconce")
         for i in "${!views[@]}"; do
             read -ra camera <<< "${views[i]}"

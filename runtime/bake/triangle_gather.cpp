@@ -643,6 +643,16 @@ std::vector<uint32_t> TriangleGather::linksAt(vec3 point, vec3 normal, float gra
     return links;
 }
 
+bool TriangleGather::meetsBack(vec3 point, vec3 direction, float length) const
+{
+    const auto hit = triangles->closest(field->info.origin + field->info.scale * point, direction, field->info.scale * length);
+    if (!hit) return false;
+    const Scene& in = scene();
+    const glm::uvec3 corner = in.triangles[hit->triangle];
+    const vec3 a = in.positions[corner.x];
+    return glm::dot(glm::cross(in.positions[corner.y] - a, in.positions[corner.z] - a), direction) > 0.0f;
+}
+
 TriangleGather::Cells TriangleGather::gatherCells() const
 {
     const glm::ivec3 count = twin::LightFieldTwin<float>(*field, {}).lightCells();

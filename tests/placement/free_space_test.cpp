@@ -45,14 +45,33 @@ TEST(FreeSpace, OpenGroundCountsUpToItsHeightWhenAskedFor)
     ASSERT_TRUE(visibility);
     const std::vector<vec3> inside = {{10, 1, 10}};
     const auto found = [&](const OpenSpace& open) { return std::move(*findFreeSpace(scene, *visibility, inside, 400000, {}, open)); };
-    const FreeSpace ground = found({.ground = 2.0f, .box = {}});
+    const FreeSpace ground = found({.ground = 2.0f});
     for (const vec3 p : {vec3(10, 1, 10), vec3(-18, 1.5f, 17), vec3(3, 1, 0)}) EXPECT_TRUE(ground.contains(p)) << p.x;
     EXPECT_FALSE(ground.contains({10, 3.5f, 10})) << "the air above";
-    const FreeSpace box = found({.ground = 0.0f, .box = Bounds{{5, 0, 5}, {15, 3, 15}}});
+    const FreeSpace box = found({.box = Bounds{{5, 0, 5}, {15, 3, 15}}});
     EXPECT_TRUE(box.contains({10, 2, 10}));
     EXPECT_FALSE(box.contains({-10, 1, -10}));
     EXPECT_LT(shareLeftOut(scene, *visibility, ground, 1), 0.05f);
     EXPECT_NEAR(shareLeftOut(scene, *visibility, box, 1), 1.0f - 100.0f / 1664.0f, 0.03f) << "100 of 1,664 square metres";
+}
+
+// A mesh that one can walk on says where that is: a path, a little below the ground, and what is below a floor isn't above it.
+TEST(FreeSpace, AboveAMeshToWalkOnItCounts)
+{
+    Scene scene = emptyScene();
+    scene.materials[0].doubleSided = true;
+    addQuad(scene, {-20, 0, -20}, {0, 0, 40}, {40, 0, 0});
+    addQuad(scene, {-16, 1, -16}, {0, 0, 4}, {4, 0, 0}); // a table over the path
+    Scene path = emptyScene();
+    addQuad(path, {-18, -0.1f, -15}, {0, 0, 2}, {36, 0, 0});
+    const auto visibility = Visibility::build(scene), walk = Visibility::build(path);
+    ASSERT_TRUE(visibility && walk);
+    const std::vector<vec3> inside = {{10, 1, 10}};
+    const auto space = findFreeSpace(scene, *visibility, inside, 400000, {}, {.ground = 2.5f, .walk = &*walk});
+    ASSERT_TRUE(space) << space.error().message;
+    for (const vec3 p : {vec3(10, 1, -14), vec3(-10, 1.5f, -14), vec3(-14, 0.5f, -14)}) EXPECT_TRUE(space->contains(p)) << p.x;
+    for (const vec3 p : {vec3(10, 1, 10), vec3(10, 1, -10), vec3(10, 3.5f, -14), vec3(-14, 2, -14)})
+        EXPECT_FALSE(space->contains(p)) << p.x;
 }
 
 TEST(FreeSpace, ClosedRoomIsFreeUpToItsWalls)
