@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -397,14 +398,39 @@ float passageRadius(const FreeSpace& space, const std::vector<uint32_t>& seeds)
     return cells ? std::min({kPassage * float(sum / double(cells)), kWidestPassage, 0.9f * widest}) : 0.0f;
 }
 
-/// Whether one can stand below a point, no more than open.ground metres down.
-bool standsOn(const Visibility& visibility, vec3 point, const OpenSpace& open)
+/// Whether one can stand below a point, no more than some metres down.
+bool standsOn(const Visibility& visibility, vec3 point, const OpenSpace& open, float height)
 {
     constexpr vec3 kDown(0.0f, -1.0f, 0.0f);
     RayHit hit, walk;
     const bool met = visibility.cast(point, kDown, hit);
-    if (!open.walk) return met && hit.t <= open.ground && !hit.back && hit.normal.y >= kWalkable;
-    return open.walk->cast(point, kDown, walk) && walk.t <= open.ground && !(met && hit.t < walk.t - kUnderGround);
+    if (!open.walk) return met && hit.t <= height && !hit.back && hit.normal.y >= kWalkable;
+    return open.walk->cast(point, kDown, walk) && walk.t <= height && !(met && hit.t < walk.t - kUnderGround);
+}
+
+/// Share of the ground that was reached, by its area, above which nothing is kept.
+float groundLeftOut(const FreeSpace& space, const std::vector<uint8_t>& reached, const Visibility& visibility)
+{
+    const DistanceField& field = space.field;
+    const float above = 1.5f * field.voxel; // the lowest cells that are free, and at times those above them
+    std::atomic<size_t> all = 0, left = 0;  // relaxed: sums that parallel_for's end orders
+    tbb::parallel_for(size_t(0), field.cells(),
+                      [&](size_t at)
+                      {
+                          if (!reached[at] || field.distance[at] > above || !standsOn(visibility, field.centre(field.cell(at)), {}, above))
+                              return;
+                          all.fetch_add(1, std::memory_order_relaxed);
+                          if (!space.reachable[at]) left.fetch_add(1, std::memory_order_relaxed);
+                      });
+    return all > 0 ? float(double(left) / double(all)) : 0.0f;
+}
+
+/// Whether a seed is where only open ground would make it count, and hardly any ground is enclosed.
+bool callsForGround(const FreeSpace& space, const std::vector<uint8_t>& reached, const Seeds& seeds, const Visibility& visibility)
+{
+    const auto outside = [&](uint32_t at)
+    { return !space.reachable[at] && standsOn(visibility, space.field.centre(space.field.cell(at)), {}, kStanding); };
+    return std::ranges::any_of(seeds.cells, outside) && groundLeftOut(space, reached, visibility) > kMostGroundLeftOut;
 }
 
 /// Rule 4: adds what was reached near the ground, or takes what was reached in the box.
@@ -420,7 +446,7 @@ void addOpen(FreeSpace& space, const std::vector<uint8_t>& reached, const OpenSp
                           if (open.box)
                               space.reachable[at] = reached[at] && inBox(centre);
                           else if (!space.reachable[at] && reached[at])
-                              space.reachable[at] = standsOn(visibility, centre, open);
+                              space.reachable[at] = standsOn(visibility, centre, open, space.ground);
                       });
 }
 
@@ -434,7 +460,8 @@ void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Vi
         if (regions.of[at] != kNoRegion) space.reachable[at] = chosen[regions.of[at]];
     std::vector<uint8_t> reached = space.reachable;
     keepEnclosed(space, seeds.indoors ? kIndoorEnclosedShare : kEnclosedShare, visibility);
-    if (open.box || open.ground > 0.0f) addOpen(space, reached, open, visibility);
+    if (!open.box) space.ground = open.ground.value_or(callsForGround(space, reached, seeds, visibility) ? kStanding : 0.0f);
+    if (open.box || space.ground > 0.0f) addOpen(space, reached, open, visibility);
     if (seeds.indoors) reached = space.reachable; // only through kept cells: alcoves of the roof are as enclosed as a room
     if (const float radius = passageRadius(space, seeds.cells); radius > 0.0f)
     {
@@ -501,7 +528,9 @@ Result<FreeSpace> findFreeSpace(const Scene& scene, const Visibility& visibility
             seeds.cells.push_back(uint32_t(space.field.index(cell)));
             seeds.regions.push_back(regions.of[seeds.cells.back()]);
         }
-        fill(space, regions, seeds, visibility, open);
+        OpenSpace same = open;
+        if (!open.box) same.ground = coarse.ground;
+        fill(space, regions, seeds, visibility, same);
         if (space.cells.empty()) return nothing;
     }
     if (!report(progress, "free space", 1.0)) return cancelled;

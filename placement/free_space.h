@@ -20,7 +20,9 @@ class Random;
 /// What counts beside what is enclosed.
 struct OpenSpace
 {
-    float ground = 0.0f;              // metres above ground that a viewer stands on, out to the scene's box; 0: bare ground doesn't count
+    // Metres above ground that a viewer stands on, out to the scene's box; 0: bare ground doesn't count; none: kStanding where a seed is
+    // on open ground and kMostGroundLeftOut of the ground that seeds reach would be left out.
+    std::optional<float> ground;
     std::optional<Bounds> box;        // all free space in it that is reached, and nothing else
     const Visibility* walk = nullptr; // a mesh that one can walk on, in place of all ground that isn't steep; must outlive the search
 };
@@ -40,7 +42,8 @@ struct OpenSpace
 ///    not. If every seed is indoors (kIndoors of all its rays hit), so is the space: kIndoorEnclosedShare holds
 ///    instead, and cells join a seed through kept cells only; a seed in the garden keeps the garden. If no cell is enclosed, the whole
 ///    reached space is kept.
-/// 4. With OpenSpace::ground, reached cells count, too, that lie no higher than that above a surface that one can stand on (kWalkable), or
+/// 4. With OpenSpace::ground, or where hardly any ground is enclosed, reached cells count, too, that lie no higher than that above a
+/// surface that one can stand on (kWalkable), or
 ///    above OpenSpace::walk, which lies no deeper than kUnderGround below what the scene shows there; with OpenSpace::box the reached cells
 ///    in it, in place of rule 3.
 struct FreeSpace
@@ -50,6 +53,7 @@ struct FreeSpace
     std::vector<uint32_t> cells;    // indices of the reachable cells, ascending
     Bounds bounds;                  // of the reachable cells
     double volume = 0.0;            // cubic metres
+    float ground = 0.0f;            // metres above open ground that count
 
     bool contains(vec3 point) const
     {
@@ -70,10 +74,12 @@ inline constexpr float kWidestPassage = 0.3f;  // metres, but no more than this:
 inline constexpr float kBlocked = 0.51f;       // cells; a little above one half, for rounding
 inline constexpr float kEnclosedShare = 0.12f; // of the rays between the horizon and 60 degrees up
 inline constexpr float kIndoorEnclosedShare = 0.6f;
-inline constexpr float kIndoors = 0.99f;    // of all rays
-inline constexpr float kGroundShare = 0.4f; // of the rays within 45 degrees of straight down; one half at the open front of a box
-inline constexpr float kWalkable = 0.7f;    // least cosine of the ground's normal with the vertical: 45 degrees
-inline constexpr float kUnderGround = 0.3f; // metres
+inline constexpr float kIndoors = 0.99f;          // of all rays
+inline constexpr float kGroundShare = 0.4f;       // of the rays within 45 degrees of straight down; one half at the open front of a box
+inline constexpr float kWalkable = 0.7f;          // least cosine of the ground's normal with the vertical: 45 degrees
+inline constexpr float kStanding = 2.5f;          // metres: a person and an arm
+inline constexpr float kMostGroundLeftOut = 0.9f; // by area: a viewer in a desert with a ruin walks in the desert
+inline constexpr float kUnderGround = 0.3f;       // metres
 inline constexpr uint32_t kDefaultVoxels = knobs::distanceVoxels.value;
 
 /// @param inside  world points, metres, that say which space counts; empty: the cameras, else the largest enclosed region

@@ -66,9 +66,9 @@ std::string faultOf(const PlaceSettings& settings)
     for (const vec3& point : settings.inside)
         if (!std::isfinite(point.x + point.y + point.z))
             return fmt::format("the inside point ({}, {}, {}) is not finite.", point.x, point.y, point.z);
-    if (!(settings.open.ground >= 0.0f && settings.open.ground <= 1e6f))
-        return fmt::format("open ground counts up to {} m; give 0 to 1e6.", settings.open.ground);
-    if (settings.open.walk && !(settings.open.ground > 0.0f))
+    if (settings.open.ground && !(*settings.open.ground >= 0.0f && *settings.open.ground <= 1e6f))
+        return fmt::format("open ground counts up to {} m; give 0 to 1e6.", *settings.open.ground);
+    if (settings.open.walk && !(settings.open.ground.value_or(0.0f) > 0.0f))
         return "a mesh to walk on is given, but no height above it that counts; give open.ground.";
     if (settings.open.box && !(finite(settings.open.box->low) && finite(settings.open.box->high) && !settings.open.box->empty()))
         return "the box of the space that counts is empty or not finite; give its low corner, then its high one.";
@@ -421,6 +421,7 @@ Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, 
     report.reachable = space->bounds;
     report.reachableVolume = space->volume;
     report.voxel = space->field.voxel;
+    report.ground = space->ground;
     report.surfaceLeftOut = shareLeftOut(scene, *visibility, *space, settings.seed ^ 0x6c656674ull);
 
     const bool isGrid = settings.method == PlaceSettings::Method::grid;

@@ -55,6 +55,7 @@ struct PlaceReport
     Bounds reachable;             // of the reachable free space, metres
     double reachableVolume = 0.0; // cubic metres
     float surfaceLeftOut = 0.0f;  // share of the scene's surface, by area, with no space that counts on either side of it
+    float ground = 0.0f;          // metres above open ground that count
     float voxel = 0.0f;           // side of a cell of the distance field, metres
     float clearance = 0.0f;       // that was kept, metres; 0 for a grid
     float comfort = 0.0f;         // that most keep, metres

@@ -47,6 +47,8 @@ void readSpace(const std::string& text, OpenSpace& open, std::string& walk)
 {
     open = {};
     walk.clear();
+    if (text == "auto") return;
+    if (text == "enclosed") open.ground = 0.0f;
     if (text == "enclosed") return;
     const auto numbers = [](const std::string& of, size_t count)
     {
@@ -72,10 +74,11 @@ void readSpace(const std::string& text, OpenSpace& open, std::string& walk)
 }
 
 /// As --space takes it.
-std::string nameOf(const OpenSpace& open, const std::string& walk)
+/// @param ground  metres above open ground that counted
+std::string nameOf(const OpenSpace& open, const std::string& walk, float ground)
 {
-    if (!walk.empty()) return fmt::format("walk:{}:{}", open.ground, walk);
-    if (open.ground > 0.0f) return fmt::format("ground:{}", open.ground);
+    if (!walk.empty()) return fmt::format("walk:{}:{}", ground, walk);
+    if (ground > 0.0f) return fmt::format("ground:{}", ground);
     if (!open.box) return "enclosed";
     const vec3 low = open.box->low, high = open.box->high;
     return fmt::format("{},{},{},{},{},{}", low.x, low.y, low.z, high.x, high.y, high.z);
@@ -154,7 +157,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     json["median_distance"] = report.medianDistance;
     json["reachable"] = {
         {"volume", report.reachableVolume}, {"low", toJson(report.reachable.low)}, {"high", toJson(report.reachable.high)}};
-    json["space"] = nameOf(options.settings.open, options.walk);
+    json["space"] = nameOf(options.settings.open, options.walk, report.ground);
     json["surface_left_out"] = report.surfaceLeftOut;
     json["voxel"] = report.voxel;
     json["clearance"] = report.clearance;
@@ -169,7 +172,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
         std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
                   << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area "
                   << 100.0f * report.coverageArea << " %\n"
-                  << "reachable space (" << nameOf(options.settings.open, options.walk) << "): " << report.reachableVolume
+                  << "reachable space (" << nameOf(options.settings.open, options.walk, report.ground) << "): " << report.reachableVolume
                   << " m^3, cells of " << report.voxel << " m; it leaves out " << 100.0f * report.surfaceLeftOut
                   << " % of the scene's surface\n"
                   << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
@@ -237,13 +240,14 @@ void addPlaceCommand(CLI::App& app, Context& context)
     command
         ->add_option_function<std::string>(
             "--space", [options = options.get()](const std::string& text) { readSpace(text, options->settings.open, options->walk); },
-            described(
-                "The space that counts: enclosed is rooms, courts and streets; ground:METRES also what lies no higher than that above any "
-                "ground one can stand on, out to the scene's box; walk:METRES:FILE above the triangles of a glTF instead, as a navigation "
-                "mesh has "
-                "them; X,Y,Z,X,Y,Z all free space in that box and nothing else",
-                words("enclosed")))
-        ->type_name("enclosed|ground:METRES|walk:METRES:FILE|BOX");
+            described(fmt::format(
+                          "The space that counts: enclosed is rooms, courts and streets; ground:METRES also what lies no higher than that "
+                          "above any ground one can stand on, out to the scene's box; walk:METRES:FILE above the triangles of a glTF "
+                          "instead, as a navigation mesh has them; X,Y,Z,X,Y,Z all free space in that box and nothing else; auto is "
+                          "enclosed, or ground:{} where a camera is on open ground and hardly any of it is enclosed",
+                          kStanding),
+                      words("auto")))
+        ->type_name("auto|enclosed|ground:METRES|walk:METRES:FILE|BOX");
     command
         ->add_option_function<std::string>(
             "--explain", [options = options.get()](const std::string& file) { options->explain = file, options->settings.explain = true; },
