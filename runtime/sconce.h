@@ -170,7 +170,7 @@ public:
     /// Records what is to be done, before the frames that show it; nothing once light is settled. Begins by waiting for whoever reads the
     /// field, ends with the barrier that lets any later stage read it. Never allocates, throws or submits. The host's own direct light is
     /// the host's to change; IndirectLight's `temporal` needs FrameView::follows = kFollowsChange as long as light is not settled. Cost a
-    /// probe with the default of surface texels: 16,224 shadow rays a light where lights have moved, and as many reads a link and bounce.
+    /// probe with the default of surface texels: 64,896 shadow rays a light where lights have moved, and 16,224 reads a link and bounce.
     /// @param timer  optional; scopes "live direct", "live bounces", "live filter", "live places", "live lobes" and "light groups"
     void record(VkCommandBuffer cmd, const RelightBudget& budget = {}, GpuTimer* timer = nullptr) noexcept;
     uint64_t deviceBytes() const;

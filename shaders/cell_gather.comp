@@ -6,11 +6,11 @@
 #include "shared/bake_passes.h"
 
 // Bake: the light of a cell on one of its six facings, at a place in the open that the cell's probes see. See shared/light_cells.h.
-// Dispatch: ceil(6 x cells / kCellGroup).
+// Dispatch: any number of groups in a row.
 layout(local_size_x = kCellGroup) in;
 layout(scalar, push_constant) uniform Push { SurfacePush push; };
 #include "surface_rays.glsl"
-vec3 sent = vec3(0.0); // by what rays ended at
+vec3 sent; // by what rays ended at
 uint endOfRay(vec3 point, vec3 direction, vec3 plane, vec2 lots, out float t, out vec3 emitted)
 {
     emitted = vec3(0.0);
@@ -22,13 +22,13 @@ void keepLink(uint i, uint link)
 }
 #include "shared/surface_gather.h"
 
-void main()
+void light(uint index)
 {
-    uint index = gl_GlobalInvocationID.x, facing = index % 6u;
+    uint facing = index % 6u;
     ivec3 count = lightCells();
     ivec2 row = quotient(int(index / 6u), count.x), layer = quotient(row.x, count.y);
     ivec3 cell = ivec3(row.y, layer.y, layer.x);
-    if (cell.z >= count.z) return;
+    sent = vec3(0.0);
     uint place = openPlace(cell), first = cellWords(cell);
     if (facing == 0u) push.sent.word[first + 6u] = place;
     if (place == 0u)
@@ -39,4 +39,11 @@ void main()
     vec3 point = cellPlace(cell, place), axis = faceDirection(int(facing), vec3(0.0, 0.0, 1.0));
     Gathered got = gatherAt(point, axis, axis, uvec2(index / 6u, facing), 0.0);
     push.sent.word[first + facing] = knowsTooLittle(got.ends, float(push.rays)) ? 0u : packKnownLight(got.light + perRay(got.ends) * sent);
+}
+
+void main()
+{
+    ivec3 count = lightCells();
+    uint facings = 6u * uint(count.x * count.y * count.z);
+    for (uint index = gl_GlobalInvocationID.x; index < facings; index += gl_NumWorkGroups.x * kCellGroup) light(index);
 }

@@ -5,14 +5,12 @@
 #include "shared/live_light.h"
 
 // Live light: its share of the finer texels of refined ones, between the texels about them: what bounces is even where they tell emitters' shadows.
-// Dispatch: ceil(words of all refined texels / kLiveGroup).
+// Dispatch: any number of groups in a row.
 layout(local_size_x = kLiveGroup) in;
 layout(scalar, push_constant) uniform Push { LivePush push; };
 
-void main()
+void light(uint index)
 {
-    uint index = gl_GlobalInvocationID.x;
-    if (index >= kFineWords * field.refinedTexels) return;
     uint texel = push.live.data.refined.word[index / kFineWords], fine = index % kFineWords, side = field.surfaceSize;
     uint probe = texel / (6u * side * side), word = push.live.data.surface.word[texel];
     int face = int(texel / (side * side) % 6u), x = int(texel % side), y = int(texel / side % side);
@@ -34,4 +32,9 @@ void main()
         if (weights > kSurfaceLeast) word = packKnownLight(sum / weights);
     }
     push.live.data.surface.word[refinedWords() + kFineWords * (surfaceWord(texel) - kRefinedWord) + fine] = word;
+}
+
+void main()
+{
+    for (uint index = gl_GlobalInvocationID.x; index < kFineWords * field.refinedTexels; index += gl_NumWorkGroups.x * kLiveGroup) light(index);
 }

@@ -5,7 +5,7 @@
 #include "shared/live_light.h"
 
 // Live light: a probe's irradiance and the coarser levels of its prefiltered radiance, each direction by all of the finest level, whose texels are
-// joined first: 2x2 of them for the first coarser level, 4x4 for all else. Dispatch: kLobeGroups x probes.
+// joined first: 2x2 of them for the first coarser level, 4x4 for all else. Dispatch: outputs of a probe / kLiveGroup x probes.
 layout(local_size_x = kLiveGroup) in;
 layout(scalar, push_constant) uniform Push { LivePush push; };
 

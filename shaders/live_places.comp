@@ -7,14 +7,12 @@
 #include "shared/live_light.h"
 #include "shared/gathered_rays.h"
 
-// Live light: of the places of surface light that are no texels. Dispatch: ceil(places / kLiveGroup).
+// Live light: of the places of surface light that are no texels. Dispatch: any number of groups in a row.
 layout(local_size_x = kLiveGroup) in;
 layout(scalar, push_constant) uniform Push { LivePush push; };
 
-void main()
+void light(uint place)
 {
-    uint place = gl_GlobalInvocationID.x;
-    if (place >= push.places) return;
     vec3 sum = vec3(0.0);
     Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.links; ++i)
@@ -24,4 +22,9 @@ void main()
             sum += push.live.data.tints.value[tintOfLink(link)].xyz * unpackSharedExponent(push.live.data.sent.word[texelOfLink(link)]);
     }
     push.live.data.surface.word[push.live.data.places.word[place]] = packKnownLight(perRay(ends) * sum);
+}
+
+void main()
+{
+    for (uint place = gl_GlobalInvocationID.x; place < push.places; place += gl_NumWorkGroups.x * kLiveGroup) light(place);
 }

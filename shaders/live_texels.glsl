@@ -31,8 +31,5 @@ Texel texelOfInvocation()
     return t;
 }
 
-/// That light is gathered about: where its direction is kept, of the plane; else the mean of the texel's shading normals.
-vec3 normalOf(LiveTexel known, SurfacePoint surface) { return field.surfaceDirections != 0u ? surface.normal : unpackNormal8(known.normal); }
-
 /// The radiance that a link brings.
 vec3 broughtBy(uint link) { return push.live.data.tints.value[tintOfLink(link)].xyz * unpackSharedExponent(push.live.data.sent.word[texelOfLink(link)]); }

@@ -64,6 +64,7 @@ void readSpace(const std::string& text, OpenSpace& open, std::string& walk)
         const size_t end = std::min(text.find(':', kWalk.size()), text.size());
         open.ground = numbers(text.substr(kWalk.size(), end - kWalk.size()), 1)[0];
         walk = text.substr(std::min(end + 1, text.size()));
+        if (!(*open.ground > 0.0f)) throw CLI::ValidationError("--space", "walk needs a height above 0, as in walk:2.5:mesh.glb");
         if (walk.empty()) throw CLI::ValidationError("--space", "walk needs a height and a mesh, as in walk:2.5:mesh.glb");
     }
     else
@@ -244,7 +245,8 @@ void addPlaceCommand(CLI::App& app, Context& context)
                           "The space that counts: enclosed is rooms, courts and streets; ground:METRES also what lies no higher than that "
                           "above any ground one can stand on, out to the scene's box; walk:METRES:FILE above the triangles of a glTF "
                           "instead, as a navigation mesh has them; X,Y,Z,X,Y,Z all free space in that box and nothing else; auto is "
-                          "enclosed, or ground:{} where a camera is on open ground and hardly any of it is enclosed",
+                          "enclosed, or ground:{} where a camera, or a point given with --inside, is on open ground and hardly any of it "
+                          "is enclosed",
                           kStanding),
                       words("auto")))
         ->type_name("auto|enclosed|ground:METRES|walk:METRES:FILE|BOX");

@@ -64,7 +64,8 @@ Kept readKept(const std::filesystem::path& folder, const std::string& key)
     std::ifstream file(folder / (key + ".json"), std::ios::binary);
     const Json json = Json::parse(file, nullptr, false);
     if (!json.is_object() || !json.value("paths", Json()).is_number_unsigned() || !json.value("relmse", Json()).is_array() ||
-        json["relmse"].size() != 3 || !std::ranges::all_of(json["relmse"], [](const Json& value) { return value.is_number(); }))
+        json["relmse"].size() != 3 || !json.value("non_finite_paths", Json()).is_number_unsigned() ||
+        !std::ranges::all_of(json["relmse"], [](const Json& value) { return value.is_number(); }))
         return {};
     Kept kept;
     auto images = readExr(pictureOf(folder, key, json["paths"].get<uint64_t>()));
@@ -74,7 +75,7 @@ Kept readKept(const std::filesystem::path& folder, const std::string& key)
     kept.reference.estimatedRelMse = json["relmse"][0].get<double>();
     kept.reference.estimatedRelMseDiffuse = json["relmse"][1].get<double>();
     kept.reference.estimatedRelMseGlossy = json["relmse"][2].get<double>();
-    kept.reference.nonFinitePaths = json.value("non_finite_paths", uint64_t(0));
+    kept.reference.nonFinitePaths = json["non_finite_paths"].get<uint64_t>();
     return kept;
 }
 
@@ -97,9 +98,9 @@ Status writeKept(const std::filesystem::path& folder, const std::string& key, co
 Result<Reference> keptReference(const RayScene& rays, const std::string& scene, const ReferenceSettings& first, const KeepReference& keep,
                                 uint64_t& paths, const Progress& progress)
 {
-    if (first.samples == 0 || (first.parts && first.samples % 4 != 0))
+    if (first.samples < 2 || (first.parts && first.samples % 4 != 0))
         return Error{ErrorCode::badArgument,
-                     fmt::format("a batch of {} paths a pixel has no parts of four; give a multiple of 4", first.samples)};
+                     fmt::format("A batch of {} paths a pixel doesn't tell its noise; give a multiple of 4.", first.samples)};
     std::error_code failed;
     std::filesystem::create_directories(keep.folder, failed);
     if (failed)

@@ -13,7 +13,7 @@ struct KeepReference
 {
     std::filesystem::path folder;
     double until = 0.0;                     // own relMSE of its indirect terms, by its noise; 0: the first batch is enough
-    uint32_t mostPaths = knobs::paths.most; // a pixel, whatever the noise
+    uint32_t mostPaths = knobs::paths.most; // a pixel, from which on no batch is added, whatever the noise
 };
 
 /// A reference kept by all that it depends on: scene, camera, size, settings, and what the path tracer answers. Batches of paths are added,

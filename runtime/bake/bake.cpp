@@ -171,7 +171,11 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     const uint64_t tilts = info.surfaceDirections != 0 ? 6 : 0;         // words a texel
     const uint64_t cells = texels > 0 && settings.rays ? 6 * kCellsOfProbe : 0; // facings; their links stay here
     const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 14 + tilts : 0)) + cells * settings.surfaceRays;
-    const uint64_t words = (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 || surface > 0 ? 3 : 2) * light +
+    // Beside it: the light of all groups, and live light's links, at texels and at places of cells and hidden surfaces.
+    const uint64_t each = light + kIrradianceWordsPerProbe + gpu::kPrefilteredWords + texels;
+    const uint64_t apart =
+        settings.layout ? settings.layout->groups * each + settings.layout->liveLinks * (texels + 12 * kCellsOfProbe) : 0;
+    const uint64_t words = apart + (deviceIsHost ? 2 : 1) * (distance + cube) + (settings.bounces > 0 || surface > 0 ? 3 : 2) * light +
                            (emitters ? light : 0) + surface;
     const uint64_t needed = 4 * words * field.probes.size(), allowed = settings.hostMemory > 0 ? settings.hostMemory : freeHostBytes();
     if (needed <= allowed) return success();

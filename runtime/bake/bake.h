@@ -65,7 +65,8 @@ struct BakeReport
     double prefilterSeconds = 0.0;
     uint64_t peakDeviceBytes = 0;
     /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
-    /// and then what each bounce adds.
+    /// and then what each bounce adds. Where surface light is gathered by triangles, bounces are of what rays that end bring: glossy
+    /// surfaces turn on a share of them, which the others make up for.
     std::vector<double> energy;
     uint32_t lights = 0; // delta lights, emitter samples and sky directions
     uint32_t moved = 0;  // probes that stood on a surface, or nearer than the faces' near plane, and were moved off it

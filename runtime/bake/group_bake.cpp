@@ -105,6 +105,7 @@ Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, st
     for (const uint32_t light : live) fixed.lights[light].intensity = vec3(0.0f);
     LightLayout layout;
     layout.liveLinks = settings.liveLinks;
+    layout.groups = groups.size();
     BakeSettings own = settings;
     own.layout = &layout;
     const auto baked = [&](const Scene& lit, const std::string& name, BakeReport& spent)

@@ -21,9 +21,6 @@ constexpr double kMostPoints = 4e6;    // voxels are larger where there were mor
 constexpr uint32_t kPlacesOfKey = 4;   // that are gathered at
 constexpr uint32_t kRaysOfPlace = 16;
 constexpr float kLeastOpen = 1e-3f;       // weight of a place
-constexpr uint32_t kRaysInside = 16;      // by which a place inside something is told
-constexpr uint32_t kMostOpenInside = 4;   // of them that meet no back near by:
-constexpr float kNearInside = 4.0f;       // finest voxels
 constexpr size_t kMostKeysOfProbe = 1024; // voxels are larger where there were more
 constexpr double kMostKeys = 2147483648.0;
 constexpr uint64_t kHiddenStream = 19; // of random numbers
@@ -63,20 +60,7 @@ uint32_t voxelShift(const FieldData& lit, double area)
     }
 }
 
-/// Whether a place is inside something whose parts don't join, as the back of a wall's outer side is: about it are backs, and near.
-bool isInside(const TriangleGather& triangles, vec3 point, vec3 normal, float near, Random& random)
-{
-    uint32_t open = 0;
-    for (uint32_t i = 0; i < kRaysInside && open <= kMostOpenInside; ++i)
-    {
-        const vec3 direction = glm::normalize(normal + 0.99f * random.direction()); // by the cosine: gaps are long
-        open += !triangles.meetsBack(point, direction, near);
-    }
-    return open <= kMostOpenInside;
-}
-
 /// Places on surfaces that no texel shows.
-/// @param spacing  between them, metres
 std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& triangles, double spacing)
 {
     const Scene& scene = triangles.scene();
@@ -108,8 +92,7 @@ std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& tria
                         {
                             if (outside[triangle] != Outside::both && outside[triangle] != side) continue;
                             const vec3 normal = glm::normalize(float(side) * across), point = on + triangles.offset() * normal;
-                            if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal) &&
-                                !isInside(triangles, point, normal, kNearInside * lit.info.voxel, random))
+                            if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal))
                                 found[triangle].push_back({0, point, normal, triangles.grazingOf(look.metallic, look.roughness)});
                         }
                     }

@@ -204,7 +204,7 @@ Status SurfaceBaker::gatherCells()
             push.sent = filtered.address();
             cellPass.push(cmd, push);
             const size_t facings = 6 * cellWords(field.info()) / gpu::kCellWords;
-            gpu->vk.CmdDispatch(cmd, uint32_t((facings + gpu::kCellGroup - 1) / gpu::kCellGroup), 1, 1);
+            gpu->vk.CmdDispatch(cmd, workgroupsInARow(facings, gpu::kCellGroup), 1, 1);
             memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
         });

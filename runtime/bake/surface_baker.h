@@ -20,6 +20,7 @@ namespace sconce
 struct LightLayout
 {
     uint32_t liveLinks = 0; // that `live` is to have; 0: it isn't asked for
+    size_t groups = 0;      // whose light is kept apart
     LiveTransport live;
     std::optional<Lamps> lamps;
     std::optional<HiddenPlaces> hidden;

@@ -86,7 +86,9 @@ struct Gatherer : LightFieldTwin<float>
 
     uint endOfRay(vec3 point, vec3 direction, vec3, vec2 lots, float& t, vec3& emitted)
     {
-        Random random(std::bit_cast<uint32_t>(lots.x), std::bit_cast<uint32_t>(lots.y), slot);
+        // What asks lights draws apart, so that rays' ways don't depend on them.
+        const uint64_t lot = std::bit_cast<uint32_t>(lots.x), other = std::bit_cast<uint32_t>(lots.y);
+        Random random(lot, other, slot), ofLights(lot, other, kOfLights | slot);
         vec3 from = worldOf(point), tint(1.0f);
         t = kFar;
         emitted = vec3(0.0f);
@@ -114,8 +116,8 @@ struct Gatherer : LightFieldTwin<float>
             const BrdfLobes lobes = lobesAt(place.surface, -dot(place.shading, direction));
             const vec3 color = specularColor(lobes);
             const float all = luminance(color), onward = shareOnward(place.surface, all);
-            brought += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, random);
-            brought += tint * straightBySpecular(place, direction, random);
+            if (onward > 0.0f) brought += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, ofLights);
+            brought += tint * straightBySpecular(place, direction, ofLights);
             from = place.position + 2.0f * gap * place.normal;
             if (turn < kMostTurns && random.uniform() < onward)
             {
@@ -129,7 +131,7 @@ struct Gatherer : LightFieldTwin<float>
             const vec3 scattered = scatteredBy(place.surface);
             const float goesOn = luminance(scattered);
             brought += tint * scattered *
-                       (emittersByDiffuse(place, random) +
+                       (emittersByDiffuse(place, ofLights) +
                         (shareToAllSides(place.surface) * deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) /
                             kBrdfPi);
             if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
@@ -140,6 +142,7 @@ struct Gatherer : LightFieldTwin<float>
         }
     }
     static constexpr int kMostTurns = 16; // on a ray's way to a texel
+    static constexpr uint64_t kOfLights = uint64_t(1) << 32;
 
     struct Place
     {
@@ -260,7 +263,7 @@ struct Gatherer : LightFieldTwin<float>
         {
             const DeltaLight at = deltaLightAt(light, light.type, point, 2.0f * field.diagonal);
             const float cosine = dot(at.toLight, place.shading);
-            if (!(cosine > 0.0f) || !(dot(at.toLight, place.normal) > 0.0f)) continue;
+            if (!(luminance(at.irradiance) > 0.0f) || !(cosine > 0.0f) || !(dot(at.toLight, place.normal) > 0.0f)) continue;
             const float sent = cosine * evaluateLobes(coat, roughness, place.shading, -direction, at.toLight).specular.x;
             const float asked = std::min(sent / kSurelyAsked, 1.0f);
             if (random.uniform() < asked && emitterReaches(point, at.toLight, at.distance, place.normal))
@@ -406,6 +409,14 @@ struct Gatherer : LightFieldTwin<float>
         return dot(normal, direction) > 0.0f ? -normal : normal;
     }
 
+    /// Whether nothing is between a surface point and a probe.
+    bool reaches(uint probe, vec3 point, vec3 normal) const
+    {
+        const vec3 from = worldOf(point) + 2.0f * gap * normal, to = worldOf(vec3(probeHeader(probe).centre)) - from;
+        const float away = length(to);
+        return !(away > 0.0f && triangles.occluded(from, to / away, away));
+    }
+
     /// A texel that shows a surface point, of the probe that sees most of it; kLinkSurface where none does.
     uint texelAt(vec3 point, vec3 normal, float lot)
     {
@@ -419,7 +430,8 @@ struct Gatherer : LightFieldTwin<float>
             if (!(density[best] > 0.0f)) break;
             density[best] = 0.0f;
             const vec3 fromProbe = point - probeHeader(ranked[best]).centre;
-            if (!isSeenBy(ranked[best], fromProbe, normal)) continue;
+            // By its texels it may see what is within one of them of a sheet, on the other side.
+            if (!isSeenBy(ranked[best], fromProbe, normal) || !reaches(ranked[best], point, normal)) continue;
             const uint found = texelShowing(ranked[best], fromProbe, normal, lot);
             if (found != kLinkSurface) return found;
         }
@@ -643,16 +655,6 @@ std::vector<uint32_t> TriangleGather::linksAt(vec3 point, vec3 normal, float gra
     return links;
 }
 
-bool TriangleGather::meetsBack(vec3 point, vec3 direction, float length) const
-{
-    const auto hit = triangles->closest(field->info.origin + field->info.scale * point, direction, field->info.scale * length);
-    if (!hit) return false;
-    const Scene& in = scene();
-    const glm::uvec3 corner = in.triangles[hit->triangle];
-    const vec3 a = in.positions[corner.x];
-    return glm::dot(glm::cross(in.positions[corner.y] - a, in.positions[corner.z] - a), direction) > 0.0f;
-}
-
 TriangleGather::Cells TriangleGather::gatherCells() const
 {
     const glm::ivec3 count = twin::LightFieldTwin<float>(*field, {}).lightCells();
@@ -683,18 +685,20 @@ TriangleGather::Cells TriangleGather::gatherCells() const
 void TriangleGather::lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const
 {
     assert(words.size() == gpu::kCellWords * cells.places.size());
-    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, {});
-    for (size_t cell = 0; cell < cells.places.size(); ++cell)
-    {
-        uint32_t* const own = &words[gpu::kCellWords * cell];
-        own[6] = cells.places[cell];
-        for (size_t facing = 0; facing < 6; ++facing)
-        {
-            const size_t index = 6 * cell + facing;
-            const std::span<const uint32_t> ends = std::span(cells.links).subspan(index * desc.rays, desc.rays);
-            own[facing] = cells.straight[index].x < 0.0f ? 0u : text.packKnownLight(cells.straight[index] + text.broughtTo(ends, sent));
-        }
-    }
+    parallelFor(cells.places.size(),
+                [&](size_t cell)
+                {
+                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, {});
+                    uint32_t* const own = &words[gpu::kCellWords * cell];
+                    own[6] = cells.places[cell];
+                    for (size_t facing = 0; facing < 6; ++facing)
+                    {
+                        const size_t index = 6 * cell + facing;
+                        const std::span<const uint32_t> ends = std::span(cells.links).subspan(index * desc.rays, desc.rays);
+                        own[facing] =
+                            cells.straight[index].x < 0.0f ? 0u : text.packKnownLight(cells.straight[index] + text.broughtTo(ends, sent));
+                    }
+                });
 }
 
 } // namespace sconce

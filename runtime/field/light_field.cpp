@@ -176,8 +176,8 @@ Status LightField::State::setQuality(const Quality& quality)
                                  prefiltered.address(),
                                  surface.address(),
                                  lamps.address(),
-                                 live,
-                                 albedo,
+                                 liveIncident.address(),
+                                 liveAlbedo.address(),
                                  radianceWeight,
                                  lampCount};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
@@ -201,7 +201,7 @@ std::array<uint32_t, 2> LightField::constants() const
     values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
                                  (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
                                  (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
-                                 (shared->live != 0 ? gpu::kHoldsLive : 0u);
+                                 (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }
@@ -284,8 +284,14 @@ void recordPass(const RayTracer::State& tracer, VkCommandBuffer cmd, VkDeviceAdd
 {
     const VkDescriptorSet sets[] = {tracer.field.descriptorSet()};
     tracer.pipeline.bind(cmd, sets);
-    tracer.pipeline.push(cmd, gpu::TraceRaysPush{rays, hits, count});
-    tracer.gpu->vk.CmdDispatch(cmd, (count + gpu::kTraceRaysGroup - 1) / gpu::kTraceRaysGroup, 1, 1);
+    constexpr uint32_t kMost = kMostWorkgroups * gpu::kTraceRaysGroup;
+    for (uint32_t done = 0; done < count; done += std::min(count - done, kMost))
+    {
+        const uint32_t some = std::min(count - done, kMost);
+        tracer.pipeline.push(
+            cmd, gpu::TraceRaysPush{rays + done * uint64_t(sizeof(gpu::Ray)), hits + done * uint64_t(sizeof(gpu::RayHit)), some});
+        tracer.gpu->vk.CmdDispatch(cmd, workgroupsInARow(some, gpu::kTraceRaysGroup), 1, 1);
+    }
 }
 
 /// Whatever reads the hits next: the host's stages are not known here.

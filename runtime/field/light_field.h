@@ -16,8 +16,8 @@ struct LightField::State
     gpu::LightFieldInfo info{};
     Buffer block, probes, distance, radiance, irradiance, prefiltered, surface, patches, lamps;
     uint32_t lampCount = 0, groupCount = 0;
-    VkDeviceAddress live = 0, albedo = 0; // of LiveLight, which keeps them; 0: light is static
-    vec3 radianceWeight{1.0f};            // see gpu::FieldBlock
+    Buffer liveIncident, liveAlbedo; // of LiveLight, which passes that it was made before go on reading; none: light is static
+    vec3 radianceWeight{1.0f};       // see gpu::FieldBlock
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
     GpuImage octree;
     DescriptorSet set;

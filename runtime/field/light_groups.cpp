@@ -200,8 +200,7 @@ void recordMix(LightGroups::State& state, VkCommandBuffer cmd, GpuTimer* timer) 
         if (!weighed && part.live == 0) continue; // as it was
         state.pipeline.push(cmd, gpu::MixPush{part.target->address(), part.shares.address(), state.weightBuffer.address(), part.live,
                                               part.words, uint32_t(state.groups.size()), part.kind, 0});
-        constexpr uint32_t kMostWorkgroups = 65535; // that every device dispatches in a row
-        gpu.vk.CmdDispatch(cmd, std::min((part.words + gpu::kMixGroup - 1) / gpu::kMixGroup, kMostWorkgroups), 1, 1);
+        gpu.vk.CmdDispatch(cmd, workgroupsInARow(part.words, gpu::kMixGroup), 1, 1);
     }
     // Read after write, by whatever stage of the host asks the field.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,

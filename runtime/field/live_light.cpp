@@ -27,7 +27,6 @@ namespace
 {
 
 constexpr uint32_t kSettledBounces = 32;    // after which light that bounces shows no more: of albedo 0.8 a thousandth is left
-constexpr uint32_t kMostDispatched = 65535; // workgroups along an axis that every device dispatches
 constexpr VkDeviceSize kMostUpdate = 65536; // bytes of vkCmdUpdateBuffer
 constexpr uint32_t kMostBouncesOfRecord = 16;
 constexpr float kMostIntensity = 1e8f;
@@ -70,7 +69,7 @@ struct Step
     void overTexels(const Pipeline& pipeline, uint32_t first, uint32_t count) const
     {
         bind(pipeline);
-        const uint32_t side = (state.field.info().surfaceSize + 7) / 8, most = kMostDispatched / 6;
+        const uint32_t side = (state.field.info().surfaceSize + 7) / 8, most = kMostWorkgroups / 6;
         for (uint32_t done = 0; done < count; done += most)
         {
             pipeline.push(cmd, push(first + done));
@@ -83,7 +82,7 @@ struct Step
         if (state.places == 0) return;
         bind(state.placePass);
         state.placePass.push(cmd, push(0));
-        state.gpu->vk.CmdDispatch(cmd, (state.places + gpu::kLiveGroup - 1) / gpu::kLiveGroup, 1, 1);
+        state.gpu->vk.CmdDispatch(cmd, workgroupsInARow(state.places, gpu::kLiveGroup), 1, 1);
         afterPass(*state.gpu, cmd);
     }
     void overRefined() const
@@ -92,7 +91,7 @@ struct Step
         if (words == 0) return;
         bind(state.finePass);
         state.finePass.push(cmd, push(0));
-        state.gpu->vk.CmdDispatch(cmd, (words + gpu::kLiveGroup - 1) / gpu::kLiveGroup, 1, 1);
+        state.gpu->vk.CmdDispatch(cmd, workgroupsInARow(words, gpu::kLiveGroup), 1, 1);
         afterPass(*state.gpu, cmd);
     }
     void overLobes(uint32_t first, uint32_t count) const
@@ -101,9 +100,9 @@ struct Step
         constexpr uint32_t kOutputs =
             gpu::kPrefilteredWords - gpu::kPrefilteredSize * gpu::kPrefilteredSize + gpu::kIrradianceSize * gpu::kIrradianceSize;
         static_assert(kOutputs % gpu::kLiveGroup == 0);
-        for (uint32_t done = 0; done < count; done += kMostDispatched)
+        for (uint32_t done = 0; done < count; done += kMostWorkgroups)
         {
-            const uint32_t some = std::min(count - done, kMostDispatched);
+            const uint32_t some = std::min(count - done, kMostWorkgroups);
             bind(state.mapPass);
             state.mapPass.push(cmd, push(first + done));
             state.gpu->vk.CmdDispatch(cmd, kSide, kSide, some);
@@ -188,23 +187,22 @@ std::string lightFault(std::span<const Light> lights)
     return {};
 }
 
-LiveLight::State::~State()
-{
-    if (!field.state().live) return;
-    field.state().live = field.state().albedo = 0;
-}
-
 Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldData& data)
 {
     const LiveTransport& live = data.live;
     if (live.links == 0)
         return Error{ErrorCode::badArgument,
                      fmt::format("the lights of the field of scene '{}' can't move; bake it with live links", data.sceneName)};
+    if (field.state().liveIncident.address() != 0)
+        return Error{ErrorCode::badArgument,
+                     fmt::format("the lights of the field of scene '{}' move already; use its live light, or load the field once more",
+                                 data.sceneName)};
     auto groups = makeLightGroups(gpu, field, data, data.groups.size() > 1);
     if (!groups) return groups.error();
     std::unique_ptr<LiveLight::State> state(new LiveLight::State{gpu.shared_from_this(), field, std::move(*groups)});
     LiveLight::State& made = *state;
     LightField::State& of = field.state();
+    Buffer incident, albedo; // that become the field's
     made.links = live.links;
     made.places = uint32_t(live.places.size());
     std::vector<uint32_t> refined;
@@ -243,7 +241,7 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
           Given{made.texelLinks, std::as_bytes(std::span(live.texelLinks)), "links of live texels"},
           Given{made.placeWords, some(live.places), "live places"}, Given{made.placeLinks, some(live.placeLinks), "links of live places"},
           Given{made.refined, some(refined), "refined live texels"}, Given{made.tints, std::as_bytes(std::span(tints)), "tints of metals"},
-          Given{made.albedo, std::as_bytes(std::span(live.albedo)), "live albedo"}})
+          Given{albedo, std::as_bytes(std::span(live.albedo)), "live albedo"}})
         if (auto status = fill(given.buffer, given.bytes, given.what); !status) return status.error();
     struct Need
     {
@@ -257,7 +255,7 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
           Need{made.bounced, 4 * texels, "bounced live light"},
           Need{made.tilts, data.info.surfaceDirections != 0 ? 4 * texels : 4, "tilts of live light"},
           Need{made.sent, 4 * texels, "live light that surfaces send"},
-          Need{made.sentNext, 4 * texels, "live light that surfaces send next"}, Need{made.incident, 4 * texels, "incident live light"},
+          Need{made.sentNext, 4 * texels, "live light that surfaces send next"}, Need{incident, 4 * texels, "incident live light"},
           Need{made.surface, 4 * data.surfaceLight.size(), "live surface light"},
           Need{made.irradiance, 4 * data.irradiance.size(), "live irradiance"},
           Need{made.prefiltered, 4 * probes * gpu::kPrefilteredWords, "live prefiltered radiance"}})
@@ -270,14 +268,14 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
     const gpu::LiveData addresses{
         made.texels.address(),     made.texelLinks.address(),  made.placeWords.address(), made.placeLinks.address(), made.refined.address(),
         made.tints.address(),      made.lightBuffer.address(), made.list.address(),       made.direct.address(),     made.bounced.address(),
-        made.tilts.address(),      made.sent.address(),        made.sentNext.address(),   made.incident.address(),   made.surface.address(),
+        made.tilts.address(),      made.sent.address(),        made.sentNext.address(),   incident.address(),        made.surface.address(),
         made.irradiance.address(), made.prefiltered.address()};
     if (auto status = gpu.upload(made.addresses, 0, std::as_bytes(std::span(&addresses, 1))); !status) return status.error();
     auto cleared = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
-            for (const Buffer* buffer : {&made.direct, &made.bounced, &made.tilts, &made.sent, &made.sentNext, &made.incident,
-                                         &made.surface, &made.irradiance, &made.prefiltered})
+            for (const Buffer* buffer : {&made.direct, &made.bounced, &made.tilts, &made.sent, &made.sentNext, &incident, &made.surface,
+                                         &made.irradiance, &made.prefiltered})
                 gpu.vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
         });
     if (!cleared) return cleared.error();
@@ -304,13 +302,13 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
     if (data.groups.size() == 1 && !data.radiance.empty())
         if (auto status = gpu.upload(of.radiance, 0, std::as_bytes(std::span(data.groups[0].radiance))); !status) return status.error();
     made.groups.state().changed = true; // all light of the field is to be mixed
-    of.live = made.incident.address();
-    of.albedo = made.albedo.address();
-    const VkDeviceAddress hits[] = {of.live, of.albedo};
-    if (auto status = gpu.upload(of.block, offsetof(gpu::FieldBlock, liveAddress), std::as_bytes(std::span(hits))); !status)
-        return status.error();
     LiveLight light(std::move(state));
     if (auto status = light.set({live.lights, {}}); !status) return status.error();
+    const VkDeviceAddress hits[] = {incident.address(), albedo.address()};
+    if (auto status = gpu.upload(of.block, offsetof(gpu::FieldBlock, liveAddress), std::as_bytes(std::span(hits))); !status)
+        return status.error();
+    of.liveIncident = std::move(incident);
+    of.liveAlbedo = std::move(albedo);
     return light;
 }
 
@@ -462,7 +460,7 @@ Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, s
             std::vector<uint32_t>& to;
         };
         for (const Part& part : {Part{of.surface, field.surfaceLight}, Part{of.irradiance, field.irradiance},
-                                 Part{of.prefiltered, field.prefiltered}, Part{live->state().incident, incident}})
+                                 Part{of.prefiltered, field.prefiltered}, Part{of.liveIncident, incident}})
             if (!part.to.empty())
                 if (auto status = gpu.download(part.from, 0, std::as_writable_bytes(std::span(part.to))); !status) return status;
     }

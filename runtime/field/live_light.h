@@ -28,16 +28,14 @@ struct LiveLight::State
     uint32_t next = 0; // of the probes that take their turn
     std::vector<Light> lights;
     std::vector<gpu::GpuLight> packed; // in the field's space
-    Buffer texels, texelLinks, placeWords, placeLinks, refined, tints, albedo, lightBuffer, list, addresses;
-    Buffer direct, bounced, tilts, sent, sentNext, incident, surface, irradiance, prefiltered;
+    Buffer texels, texelLinks, placeWords, placeLinks, refined, tints, lightBuffer, list, addresses;
+    Buffer direct, bounced, tilts, sent, sentNext, surface, irradiance, prefiltered;
     Pipeline directPass, bouncePass, filterPass, placePass, finePass, mapPass, lobePass;
     bool moved = false;               // lights since the last record
     std::vector<uint32_t> others;     // that need light and wait; reserved
     std::vector<uint32_t> turn, dark; // of a record: probes that are lit, and of them those whose direct light is made; reserved
     std::vector<VkBufferCopy> copies; // reserved
     uint64_t bytes = 0;
-
-    ~State();
 };
 
 /// @param field  made from `data`; passes that trace it must be made afterwards

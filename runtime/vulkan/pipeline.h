@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,14 @@ struct ShaderConstant
 };
 
 /// A compute or graphics pipeline with its layout; move-only.
+inline constexpr uint32_t kMostWorkgroups = 65535; // along an axis, that every device dispatches
+
+/// Of a pass over so many invocations: its shader goes on by strides where they are too many for one row.
+constexpr uint32_t workgroupsInARow(uint64_t invocations, uint32_t group)
+{
+    return uint32_t(std::min<uint64_t>((invocations + group - 1) / group, kMostWorkgroups));
+}
+
 class Pipeline
 {
 public:

@@ -109,6 +109,8 @@ TEST_F(KeptReference, GoesOnWhereItWasInterrupted)
     EXPECT_EQ(before, 8u);
     settings.samples = 6;
     EXPECT_EQ(kept(0.0, before).error().code, ErrorCode::badArgument);
+    settings.samples = 1, settings.parts = false;
+    EXPECT_EQ(kept(0.0, before).error().code, ErrorCode::badArgument) << "its noise isn't known";
 }
 
 } // namespace

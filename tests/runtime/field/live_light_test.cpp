@@ -178,6 +178,39 @@ TEST_F(LiveLightTest, ARelitFieldIsTheFreshBake)
     EXPECT_TRUE(std::equal(relit.surfaceLight.begin(), relit.surfaceLight.begin() + std::ptrdiff_t(common), fresh->surfaceLight.begin()));
 }
 
+// Rays go on by glossy lobes as they would in any light.
+TEST_F(LiveLightTest, ARelitFieldOfGlossySurfacesIsTheFreshBake)
+{
+    Scene scene = litRoom();
+    for (Material& material : scene.materials) material.roughness = 0.3f;
+    auto relit = baked(scene, 16);
+    scene.lights[0] = bulb({-1.2f, 0.4f, -1.1f}, vec3(6.0f, 2.0f, 1.0f));
+    const auto fresh = baked(scene, 16);
+    ASSERT_TRUE(relit && fresh);
+    EXPECT_EQ(relit->live.texelLinks, fresh->live.texelLinks);
+    const Status status = relightField(device.gpu(), *relit, scene.lights, std::vector<vec3>{vec3(1.0f)});
+    ASSERT_TRUE(status) << status.error().message;
+    EXPECT_EQ(relit->radiance, fresh->radiance);
+    EXPECT_EQ(relit->irradiance, fresh->irradiance);
+}
+
+// Passes that were made beside live light go on reading it once nobody moves it, and a field has one.
+TEST_F(LiveLightTest, TheFieldKeepsItsLightOnceNobodyMovesIt)
+{
+    const FieldData& data = room();
+    auto light = makeLightField(device.gpu(), data);
+    ASSERT_TRUE(light);
+    {
+        const auto live = makeLiveLight(device.gpu(), *light, data);
+        ASSERT_TRUE(live) << live.error().message;
+    }
+    EXPECT_NE(light->state().liveIncident.address(), 0u);
+    EXPECT_TRUE(light->setQuality({}));
+    const auto again = makeLiveLight(device.gpu(), *light, data);
+    ASSERT_FALSE(again.ok());
+    EXPECT_EQ(again.error().code, ErrorCode::badArgument);
+}
+
 // With every link that the bake has, what moves is lit as what stays: but for direct light, which rays through the field find.
 TEST_F(LiveLightTest, AllLinksGiveTheLightOfTheStaticBake)
 {
@@ -261,14 +294,14 @@ TEST_F(LiveLightTest, ASwitchedLampIsThereWithin8Frames)
         off[0].intensity = vec3(0.0f);
         EXPECT_TRUE(live->set({off, {}}));
         while (!live->settled()) record(*live);
-        const double dark = meanOf(live->state().incident, room());
+        const double dark = meanOf(light->state().liveIncident, room());
         EXPECT_EQ(dark, 0.0) << "of the lamp that is off";
         std::vector<double> way;
         EXPECT_TRUE(live->set({room().live.lights, {}}));
         while (!live->settled())
         {
             record(*live, {.probes = probes, .eye = kProbes[0]});
-            way.push_back(meanOf(live->state().incident, room()));
+            way.push_back(meanOf(light->state().liveIncident, room()));
         }
         for (size_t i = 0; i + 1 < way.size(); ++i) EXPECT_LE(way[i], way[i + 1] * 1.001) << "it never overshoots";
         return 1 + int(std::ranges::find_if(way, [&](double x) { return x >= 0.95 * way.back(); }) - way.begin());
@@ -286,7 +319,7 @@ TEST_F(LiveLightTest, ABlinkingLightIsRightInTheMean)
     auto live = makeLiveLight(device.gpu(), *light, room());
     ASSERT_TRUE(live);
     while (!live->settled()) record(*live);
-    const double steady = meanOf(live->state().incident, room());
+    const double steady = meanOf(light->state().liveIncident, room());
     std::vector<Light> off = room().live.lights;
     off[0].intensity = vec3(0.0f);
     double sum = 0.0;
@@ -294,7 +327,7 @@ TEST_F(LiveLightTest, ABlinkingLightIsRightInTheMean)
     {
         ASSERT_TRUE(live->set({frame % 2 == 0 ? off : room().live.lights, {}}));
         record(*live);
-        if (frame >= 20) sum += meanOf(live->state().incident, room());
+        if (frame >= 20) sum += meanOf(light->state().liveIncident, room());
     }
     EXPECT_NEAR(sum / 40.0, 0.5 * steady, 0.01 * steady);
 }
