@@ -32,8 +32,7 @@ void main()
     SurfacePoint surface = evaluateMaterial(material, uv, uvDx, uvDy);
     BrdfSurface reflecting = BrdfSurface(clamp(surface.baseColor.rgb, 0.0, 1.0), surface.metallic, surface.roughness);
     vec3 albedo = hemisphericalAlbedo(reflecting);
-    // As grazingOf() fits it, near enough for light from one side.
-    float grazing = reflecting.roughness > kRoughestLobe ? 0.0 : (1.0 - reflecting.metallic) * 21.0 * (diffuseAlong(1.0, reflecting.roughness) - 1.0);
+    float grazing = (1.0 - reflecting.metallic) * grazingOfRoughness(reflecting.roughness);
     // Of many normals each sees less of the hemisphere over their plane than their mean does, and less of a light along the mean.
     float ofAll = 0.5 + 0.5 * together;
     outSurface = uvec4(packRootOfColor(ofAll * albedo), packSeen(shading, together / ofAll, shareToAllSides(reflecting), grazing),

@@ -5,6 +5,7 @@
     python3 bench/pages/bench_rows.py knobs RESULTS.json        bench/results/knobs.json: one scene's knobs
     bench/pages/leaks_sheet.sh                                  bench/results/walls.json
     bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
+    bench/pages/response_table.sh                               bench/results/light_response.json
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -294,8 +295,26 @@ def steps(arguments):
     print(f'  "{slug(name)}": {json.dumps(row)},', flush=True)
 
 
+def response(arguments):
+    """The lines of sconce_light_response: a row a way, its curve at some frames, and when it is there."""
+    lines = Path(arguments[0]).read_text().splitlines()
+    end = next(i for i, line in enumerate(lines[1:], 1) if not line[:1].isdigit())
+    curve = [line.split(";") for line in lines[1:end]]
+    shown, rows = [frame for frame in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 100, 150, 200, 300) if frame <= len(curve)], {}
+    for way, line in enumerate(lines[end:]):
+        name, said = line.rsplit(": ", 1)
+        numbers = re.search(r"50 % after (.*?), 95 % after (.*?), 99 % after (.*?) frames; mean error on the way to 95 % (.*)", said).groups()
+        at = lambda frame, k: curve[frame - 1][1 + 2 * way + k]
+        rows[slug(name)] = {"label": name} | dict(zip(("frames_50", "frames_95", "frames_99", "error"), numbers)) | {
+            "frames": " ".join(map(str, shown)), "means": " ".join(at(frame, 0) for frame in shown), "errors": " ".join(at(frame, 1) for frame in shown),
+            "worst": f"{max(float(at(frame, 1)) for frame in range(1, len(curve) + 1)):.3f}"}
+    write("light_response.json", "Light that bounces after a lamp of hall is switched on, frame by frame, of what it settles at", ["bench/pages/response_table.sh"],
+          ["means: of all texels by area, over the settled mean; errors: root mean square over the settled root mean square; error: its mean on the way to 95 %",
+           "blended: an irradiance volume's blending (Majercik et al. 2021) at every texel, fed without noise: what rays a frame it has doesn't show"], rows)
+
+
 if __name__ == "__main__":
-    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps}
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

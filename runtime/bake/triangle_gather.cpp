@@ -341,20 +341,6 @@ struct Gatherer : LightFieldTwin<float>
     {
         return uint(255.0f * grazing / kMostGrazing + 0.5f) << 24;
     }
-    /// The nearest to diffuseAlong() by least squares.
-    static float grazingOfRoughness(float roughness)
-    {
-        constexpr int kCosines = 64;
-        float sum = 0.0f, squares = 0.0f;
-        for (int i = 0; i < kCosines; ++i)
-        {
-            const float c = sqrt((float(i) + 0.5f) / float(kCosines)), by = takenAlong(c, 1.0f) - 1.0f;
-            sum += (diffuseAlong(c, roughness) - 1.0f) * by;
-            squares += by * by;
-        }
-        return std::clamp(sum / squares, 0.0f, kMostGrazing);
-    }
-
     uint nearestTint(vec3 tint) const
     {
         uint nearest = 0;

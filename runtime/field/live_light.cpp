@@ -115,14 +115,15 @@ struct Step
     }
 };
 
-/// Chooses the probes that are lit in a record: all that need it where so many may be; else by halves those nearest to the eye and those
-/// whose turn it is.
+/// Chooses the probes that are lit in a record: all that wait in this round where so many may be; else by halves those nearest to the eye
+/// and those whose turn it is.
 void chooseProbes(LiveLight::State& state, const RelightBudget& budget)
 {
     state.turn.clear();
     const uint32_t count = uint32_t(state.probes.size()), most = budget.probes == 0 ? count : std::min(budget.probes, count);
-    const auto needs = [&](uint32_t probe) { return state.probes[probe].bounces > 0; };
-    const auto needing = uint32_t(std::ranges::count_if(state.probes, [](const auto& probe) { return probe.bounces > 0; }));
+    const auto needs = [&](uint32_t probe) { return state.bounces > 0 && !state.probes[probe].lit; };
+    uint32_t needing = 0;
+    for (uint32_t probe = 0; probe < count; ++probe) needing += needs(probe);
     const uint32_t byTurn = needing <= most ? most : most - most / 2;
     for (auto& probe : state.probes) probe.chosen = false;
     for (uint32_t step = 0; step < count && state.turn.size() < byTurn; ++step)
@@ -145,6 +146,16 @@ void chooseProbes(LiveLight::State& state, const RelightBudget& budget)
     const auto end = state.others.begin() + std::ptrdiff_t(most - state.turn.size());
     std::ranges::nth_element(state.others, end, nearer);
     state.turn.insert(state.turn.end(), state.others.begin(), end);
+}
+
+/// After a record of so many bounces: a round ends with its last probe.
+void countRound(LiveLight::State& state, uint32_t bounces)
+{
+    for (const uint32_t probe : state.turn) state.probes[probe].direct = false, state.probes[probe].lit = true;
+    state.ofRound = std::min(state.ofRound, bounces);
+    if (!std::ranges::all_of(state.probes, &LiveLight::State::Probe::lit)) return;
+    for (auto& probe : state.probes) probe.lit = false;
+    state.bounces -= std::min(state.bounces, std::exchange(state.ofRound, kMostBouncesOfRecord));
 }
 
 /// Whether a probe sees anything within a light's range.
@@ -187,10 +198,151 @@ std::string lightFault(std::span<const Light> lights)
     return {};
 }
 
+namespace
+{
+
+/// Makes what stands behind a LiveLight.
+struct LiveMaker
+{
+    Gpu& gpu;
+    const LightField& field;
+    const FieldData& data;
+    LiveLight::State& made;
+    Buffer incident{}, albedo{}; // that become the field's
+
+    /// What records need no memory for afterwards.
+    void reserve()
+    {
+        const size_t probes = data.probes.size();
+        made.links = data.live.links;
+        made.places = uint32_t(data.live.places.size());
+        for (const gpu::ProbeHeader& probe : data.probes) made.probes.push_back({data.info.origin + data.info.scale * probe.centre});
+        for (std::vector<uint32_t>* list : {&made.turn, &made.others, &made.dark}) list->reserve(probes);
+        made.copies.reserve(probes);
+        made.packed.reserve(kMostLiveLights);
+        made.lights.reserve(kMostLiveLights);
+    }
+
+    Status uploadTransport()
+    {
+        const LiveTransport& live = data.live;
+        std::vector<uint32_t> refined;
+        for (uint32_t texel = 0; texel < live.texels.size(); ++texel)
+            if (data.surfaceLight[texel] >= gpu::kRefinedWord) refined.push_back(texel);
+        made.refinedCount = uint32_t(refined.size());
+        std::vector<vec4> tints;
+        for (const vec3& tint : live.tints) tints.emplace_back(tint, 0.0f);
+        const std::vector<uint32_t> none(1); // where there is nothing, a buffer still wants a byte
+        const auto some = [&](const std::vector<uint32_t>& words) { return std::as_bytes(std::span(words.empty() ? none : words)); };
+        struct Given
+        {
+            Buffer& buffer;
+            std::span<const std::byte> bytes;
+            const char* what;
+        };
+        for (const Given& given : {Given{made.texels, std::as_bytes(std::span(live.texels)), "live texels"},
+                                   Given{made.texelLinks, std::as_bytes(std::span(live.texelLinks)), "links of live texels"},
+                                   Given{made.placeWords, some(live.places), "live places"},
+                                   Given{made.placeLinks, some(live.placeLinks), "links of live places"},
+                                   Given{made.refined, some(refined), "refined live texels"},
+                                   Given{made.tints, std::as_bytes(std::span(tints)), "tints of metals"},
+                                   Given{albedo, std::as_bytes(std::span(live.albedo)), "live albedo"}})
+        {
+            auto filled = gpu.makeBufferWith<std::byte>(given.bytes, 0, given.what);
+            if (!filled) return filled.error();
+            given.buffer = std::move(*filled);
+            made.bytes += given.buffer.size();
+        }
+        return success();
+    }
+
+    Status makeRoom()
+    {
+        const size_t probes = data.probes.size(), texels = data.live.texels.size();
+        struct Need
+        {
+            Buffer& buffer;
+            uint64_t bytes;
+            const char* what;
+        };
+        for (const Need& need :
+             {Need{made.lightBuffer, kMostLiveLights * sizeof(gpu::GpuLight), "live lights"},
+              Need{made.list, 8 * probes, "probes to be lit"}, Need{made.addresses, sizeof(gpu::LiveData), "addresses of live light"},
+              Need{made.direct, 4 * texels, "direct live light"}, Need{made.bounced, 4 * texels, "bounced live light"},
+              Need{made.tilts, data.info.surfaceDirections != 0 ? 4 * texels : 4, "tilts of live light"},
+              Need{made.sent, 4 * texels, "live light that surfaces send"},
+              Need{made.sentNext, 4 * texels, "live light that surfaces send next"}, Need{incident, 4 * texels, "incident live light"},
+              Need{made.surface, 4 * data.surfaceLight.size(), "live surface light"},
+              Need{made.irradiance, 4 * data.irradiance.size(), "live irradiance"},
+              Need{made.prefiltered, 4 * probes * gpu::kPrefilteredWords, "live prefiltered radiance"}})
+        {
+            auto buffer = gpu.makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
+            if (!buffer) return buffer.error();
+            need.buffer = std::move(*buffer);
+            made.bytes += need.buffer.size();
+        }
+        const gpu::LiveData addresses{made.texels.address(),      made.texelLinks.address(), made.placeWords.address(),
+                                      made.placeLinks.address(),  made.refined.address(),    made.tints.address(),
+                                      made.lightBuffer.address(), made.list.address(),       made.direct.address(),
+                                      made.bounced.address(),     made.tilts.address(),      made.sent.address(),
+                                      made.sentNext.address(),    incident.address(),        made.surface.address(),
+                                      made.irradiance.address(),  made.prefiltered.address()};
+        if (auto status = gpu.upload(made.addresses, 0, std::as_bytes(std::span(&addresses, 1))); !status) return status;
+        return gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                for (const Buffer* buffer : {&made.direct, &made.bounced, &made.tilts, &made.sent, &made.sentNext, &incident, &made.surface,
+                                             &made.irradiance, &made.prefiltered})
+                    gpu.vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+            });
+    }
+
+    Status makePasses()
+    {
+        const VkDescriptorSetLayout layouts[] = {field.layout()};
+        const auto constants = shaderConstants(field);
+        for (const auto& [pipeline, code] : {std::pair<Pipeline*, Spirv>{&made.directPass, live_direct_comp},
+                                             {&made.bouncePass, live_bounce_comp},
+                                             {&made.filterPass, live_filter_comp},
+                                             {&made.placePass, live_places_comp},
+                                             {&made.finePass, live_fine_comp},
+                                             {&made.mapPass, live_map_comp},
+                                             {&made.lobePass, live_lobes_comp}})
+        {
+            auto pass = Pipeline::compute(gpu, code, layouts, sizeof(gpu::LivePush), constants);
+            if (!pass) return pass.error();
+            *pipeline = std::move(*pass);
+        }
+        return success();
+    }
+
+    /// Live light becomes a share of the field's.
+    Status join()
+    {
+        LightField::State& of = field.state();
+        for (LightGroups::State::Part& part : made.groups.state().parts)
+            part.live = part.target == &of.irradiance    ? made.irradiance.address()
+                        : part.target == &of.prefiltered ? made.prefiltered.address()
+                        : part.target == &of.surface     ? made.surface.address()
+                                                         : 0;
+        // What rays find is the radiance of the groups, and live light by the albedo.
+        if (data.groups.size() == 1 && !data.radiance.empty())
+            if (auto status = gpu.upload(of.radiance, 0, std::as_bytes(std::span(data.groups[0].radiance))); !status) return status;
+        made.groups.state().changed = true; // all light of the field is to be mixed
+        const VkDeviceAddress hits[] = {incident.address(), albedo.address()};
+        if (auto status = gpu.upload(of.block, offsetof(gpu::FieldBlock, liveAddress), std::as_bytes(std::span(hits))); !status)
+            return status;
+        of.liveIncident = std::move(incident);
+        of.liveAlbedo = std::move(albedo);
+        return success();
+    }
+};
+
+} // namespace
+
 Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldData& data)
 {
-    const LiveTransport& live = data.live;
-    if (live.links == 0)
+    if (data.live.links == 0)
         return Error{ErrorCode::badArgument,
                      fmt::format("the lights of the field of scene '{}' can't move; bake it with live links", data.sceneName)};
     if (field.state().liveIncident.address() != 0)
@@ -200,115 +352,12 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
     auto groups = makeLightGroups(gpu, field, data, data.groups.size() > 1);
     if (!groups) return groups.error();
     std::unique_ptr<LiveLight::State> state(new LiveLight::State{gpu.shared_from_this(), field, std::move(*groups)});
-    LiveLight::State& made = *state;
-    LightField::State& of = field.state();
-    Buffer incident, albedo; // that become the field's
-    made.links = live.links;
-    made.places = uint32_t(live.places.size());
-    std::vector<uint32_t> refined;
-    for (uint32_t texel = 0; texel < live.texels.size(); ++texel)
-        if (data.surfaceLight[texel] >= gpu::kRefinedWord) refined.push_back(texel);
-    made.refinedCount = uint32_t(refined.size());
-    const size_t probes = data.probes.size(), texels = live.texels.size();
-    for (const gpu::ProbeHeader& probe : data.probes) made.probes.push_back({data.info.origin + data.info.scale * probe.centre});
-    made.turn.reserve(probes);
-    made.others.reserve(probes);
-    made.dark.reserve(probes);
-    made.copies.reserve(probes);
-    made.packed.reserve(kMostLiveLights);
-    made.lights.reserve(kMostLiveLights);
-
-    const auto fill = [&](Buffer& buffer, std::span<const std::byte> bytes, const char* what) -> Status
-    {
-        auto filled = gpu.makeBufferWith<std::byte>(bytes, 0, what);
-        if (!filled) return filled.error();
-        buffer = std::move(*filled);
-        made.bytes += buffer.size();
-        return success();
-    };
-    std::vector<vec4> tints;
-    for (const vec3& tint : live.tints) tints.emplace_back(tint, 0.0f);
-    const std::vector<uint32_t> none(1); // where there is nothing, a buffer still wants a byte
-    const auto some = [&](const std::vector<uint32_t>& words) { return std::as_bytes(std::span(words.empty() ? none : words)); };
-    struct Given
-    {
-        Buffer& buffer;
-        std::span<const std::byte> bytes;
-        const char* what;
-    };
-    for (const Given& given :
-         {Given{made.texels, std::as_bytes(std::span(live.texels)), "live texels"},
-          Given{made.texelLinks, std::as_bytes(std::span(live.texelLinks)), "links of live texels"},
-          Given{made.placeWords, some(live.places), "live places"}, Given{made.placeLinks, some(live.placeLinks), "links of live places"},
-          Given{made.refined, some(refined), "refined live texels"}, Given{made.tints, std::as_bytes(std::span(tints)), "tints of metals"},
-          Given{albedo, std::as_bytes(std::span(live.albedo)), "live albedo"}})
-        if (auto status = fill(given.buffer, given.bytes, given.what); !status) return status.error();
-    struct Need
-    {
-        Buffer& buffer;
-        uint64_t bytes;
-        const char* what;
-    };
-    for (const Need& need :
-         {Need{made.lightBuffer, kMostLiveLights * sizeof(gpu::GpuLight), "live lights"}, Need{made.list, 8 * probes, "probes to be lit"},
-          Need{made.addresses, sizeof(gpu::LiveData), "addresses of live light"}, Need{made.direct, 4 * texels, "direct live light"},
-          Need{made.bounced, 4 * texels, "bounced live light"},
-          Need{made.tilts, data.info.surfaceDirections != 0 ? 4 * texels : 4, "tilts of live light"},
-          Need{made.sent, 4 * texels, "live light that surfaces send"},
-          Need{made.sentNext, 4 * texels, "live light that surfaces send next"}, Need{incident, 4 * texels, "incident live light"},
-          Need{made.surface, 4 * data.surfaceLight.size(), "live surface light"},
-          Need{made.irradiance, 4 * data.irradiance.size(), "live irradiance"},
-          Need{made.prefiltered, 4 * probes * gpu::kPrefilteredWords, "live prefiltered radiance"}})
-    {
-        auto buffer = gpu.makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
-        if (!buffer) return buffer.error();
-        need.buffer = std::move(*buffer);
-        made.bytes += need.buffer.size();
-    }
-    const gpu::LiveData addresses{
-        made.texels.address(),     made.texelLinks.address(),  made.placeWords.address(), made.placeLinks.address(), made.refined.address(),
-        made.tints.address(),      made.lightBuffer.address(), made.list.address(),       made.direct.address(),     made.bounced.address(),
-        made.tilts.address(),      made.sent.address(),        made.sentNext.address(),   incident.address(),        made.surface.address(),
-        made.irradiance.address(), made.prefiltered.address()};
-    if (auto status = gpu.upload(made.addresses, 0, std::as_bytes(std::span(&addresses, 1))); !status) return status.error();
-    auto cleared = gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            for (const Buffer* buffer : {&made.direct, &made.bounced, &made.tilts, &made.sent, &made.sentNext, &incident, &made.surface,
-                                         &made.irradiance, &made.prefiltered})
-                gpu.vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
-        });
-    if (!cleared) return cleared.error();
-    const VkDescriptorSetLayout layouts[] = {field.layout()};
-    const auto constants = shaderConstants(field);
-    for (const auto& [pipeline, code] : {std::pair<Pipeline*, Spirv>{&made.directPass, live_direct_comp},
-                                         {&made.bouncePass, live_bounce_comp},
-                                         {&made.filterPass, live_filter_comp},
-                                         {&made.placePass, live_places_comp},
-                                         {&made.finePass, live_fine_comp},
-                                         {&made.mapPass, live_map_comp},
-                                         {&made.lobePass, live_lobes_comp}})
-    {
-        auto pass = Pipeline::compute(gpu, code, layouts, sizeof(gpu::LivePush), constants);
-        if (!pass) return pass.error();
-        *pipeline = std::move(*pass);
-    }
-    for (LightGroups::State::Part& part : made.groups.state().parts)
-        part.live = part.target == &of.irradiance    ? made.irradiance.address()
-                    : part.target == &of.prefiltered ? made.prefiltered.address()
-                    : part.target == &of.surface     ? made.surface.address()
-                                                     : 0;
-    // What rays find is the radiance of the groups, and live light by the albedo.
-    if (data.groups.size() == 1 && !data.radiance.empty())
-        if (auto status = gpu.upload(of.radiance, 0, std::as_bytes(std::span(data.groups[0].radiance))); !status) return status.error();
-    made.groups.state().changed = true; // all light of the field is to be mixed
+    LiveMaker maker{gpu, field, data, *state};
+    maker.reserve();
+    for (Status (LiveMaker::*step)() : {&LiveMaker::uploadTransport, &LiveMaker::makeRoom, &LiveMaker::makePasses, &LiveMaker::join})
+        if (auto status = (maker.*step)(); !status) return status.error();
     LiveLight light(std::move(state));
-    if (auto status = light.set({live.lights, {}}); !status) return status.error();
-    const VkDeviceAddress hits[] = {incident.address(), albedo.address()};
-    if (auto status = gpu.upload(of.block, offsetof(gpu::FieldBlock, liveAddress), std::as_bytes(std::span(hits))); !status)
-        return status.error();
-    of.liveIncident = std::move(incident);
-    of.liveAlbedo = std::move(albedo);
+    if (auto status = light.set({data.live.lights, {}}); !status) return status.error();
     return light;
 }
 
@@ -335,7 +384,9 @@ Status LiveLight::set(const LightState& wanted)
     if (auto status = state.groups.set(weights); !status) return status;
     if (std::ranges::equal(wanted.lights, state.lights, sameLight)) return success();
     const LightField::State& field = state.field.state();
-    for (size_t probe = 0; probe < state.probes.size(); ++probe) state.probes[probe].bounces = kSettledBounces;
+    state.bounces = kSettledBounces;
+    state.ofRound = kMostBouncesOfRecord;
+    for (auto& probe : state.probes) probe.lit = false;
     const auto touch = [&](const Light& light)
     {
         for (size_t probe = 0; probe < state.probes.size(); ++probe)
@@ -357,8 +408,7 @@ Status LiveLight::set(const LightState& wanted)
 
 bool LiveLight::settled() const
 {
-    return !owned->groups.state().changed &&
-           std::ranges::none_of(owned->probes, [](const State::Probe& probe) { return probe.bounces > 0; });
+    return !owned->groups.state().changed && owned->bounces == 0;
 }
 
 void LiveLight::record(VkCommandBuffer cmd, const RelightBudget& budget, GpuTimer* timer) noexcept
@@ -424,12 +474,7 @@ void LiveLight::record(VkCommandBuffer cmd, const RelightBudget& budget, GpuTime
         timed("live places", [&] { step.overPlaces(); });
         timed("live lobes", [&] { step.overLobes(0, count); });
     }
-    for (const uint32_t probe : state.turn)
-    {
-        State::Probe& done = state.probes[probe];
-        done.direct = false;
-        done.bounces -= std::min(done.bounces, bounces);
-    }
+    countRound(state, bounces);
     recordMix(state.groups.state(), cmd, timer);
 }
 

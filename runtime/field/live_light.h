@@ -15,10 +15,10 @@ struct LiveLight::State
     /// What is still to be done of a probe's light.
     struct Probe
     {
-        vec3 centre;          // world
-        bool direct = true;   // light straight from lights is not of these lights
-        uint32_t bounces = 0; // until its light is settled
-        bool chosen = false;  // for the record in the making
+        vec3 centre;         // world
+        bool direct = true;  // light straight from lights is not of these lights
+        bool lit = false;    // in this round
+        bool chosen = false; // for the record in the making
     };
     std::shared_ptr<Gpu> gpu;
     LightField field;
@@ -26,6 +26,9 @@ struct LiveLight::State
     uint32_t links = 0, places = 0, refinedCount = 0, lightCount = 0;
     std::vector<Probe> probes;
     uint32_t next = 0; // of the probes that take their turn
+    uint32_t bounces =
+        0; // until light is settled: of all probes together, since each is lit by the others. A round lights every probe once,
+    uint32_t ofRound = 0; // by so many bounces
     std::vector<Light> lights;
     std::vector<gpu::GpuLight> packed; // in the field's space
     Buffer texels, texelLinks, placeWords, placeLinks, refined, tints, lightBuffer, list, addresses;

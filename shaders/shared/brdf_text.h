@@ -181,6 +181,22 @@ SCONCE_PURE real diffuseAlong(real nl, real roughness)
 SCONCE_CONST real kMostGrazing = real(1.05);
 SCONCE_PURE real takenAlong(real c, real grazing) { return real(1.0) + grazing * (real(1.0) / real(21.0) - schlick(c)); }
 
+/// The nearest to diffuseAlong() by least squares over the hemisphere, of a surface that is no metal.
+SCONCE_PURE real grazingOfRoughness(real roughness)
+{
+    const int kCosines = 16;
+    real sum = real(0.0);
+    real squares = real(0.0);
+    for (int i = 0; i < kCosines; ++i)
+    {
+        real c = sqrt((real(i) + real(0.5)) / real(kCosines));
+        real by = takenAlong(c, real(1.0)) - real(1.0);
+        sum += (diffuseAlong(c, roughness) - real(1.0)) * by;
+        squares += by * by;
+    }
+    return kMostGrazing * between0And1(sum / (squares * kMostGrazing));
+}
+
 /// Both lobes; 0 when either direction is below the surface.
 SCONCE_PURE BrdfValue evaluateLobes(BrdfLobes lobes, real roughness, vec3 normal, vec3 view, vec3 light)
 {

@@ -312,6 +312,32 @@ TEST_F(LiveLightTest, ASwitchedLampIsThereWithin8Frames)
     EXPECT_LE(half, 8);
 }
 
+// Lit a probe at a time, whatever is near to the eye, light settles where all at once it does: each probe is lit by the others.
+TEST_F(LiveLightTest, ABudgetSettlesAtTheLightOfAll)
+{
+    std::vector<Light> off = room().live.lights;
+    off[0].intensity = vec3(0.0f);
+    std::vector<uint32_t> settled[2];
+    for (const uint32_t probes : {0u, 1u})
+    {
+        auto light = makeLightField(device.gpu(), room());
+        auto live = makeLiveLight(device.gpu(), *light, room());
+        ASSERT_TRUE(live);
+        ASSERT_TRUE(live->set({off, {}}));
+        while (!live->settled()) record(*live);
+        ASSERT_TRUE(live->set({room().live.lights, {}}));
+        while (!live->settled()) record(*live, {.probes = probes, .eye = kProbes[0]});
+        settled[probes] = words(light->state().liveIncident, room().live.texels.size());
+    }
+    double off2 = 0.0, all = 0.0;
+    for (size_t i = 0; i < settled[0].size(); ++i)
+    {
+        const vec3 a = Text::unpackSharedExponent(settled[1][i]), b = Text::unpackSharedExponent(settled[0][i]);
+        off2 += double(glm::dot(a - b, a - b)), all += double(glm::dot(b, b));
+    }
+    EXPECT_LT(off2, 1e-6 * all);
+}
+
 // A light that blinks every frame gives half of its light in the mean.
 TEST_F(LiveLightTest, ABlinkingLightIsRightInTheMean)
 {
