@@ -51,9 +51,11 @@ def add_textures(gltf):
     checker = png(16, lambda x, y: (230, 200, 160) if (x // 8 + y // 8) % 2 else (120, 60, 40))
     rough = png(16, lambda x, y: (0, 140 if x < 8 else 220, 0))
     waves = png(32, lambda x, y: (int(127.5 + 40 * math.sin(x * math.pi / 8)), int(127.5 + 40 * math.sin(y * math.pi / 8)), 235))
-    gltf["images"] = [{"uri": uri("image/png", picture)} for picture in (checker, rough, waves)]
-    gltf["textures"] = [{"source": i} for i in range(3)]
+    stripes = png(8, lambda x, y: (255, 255, 255) if x % 4 < 2 else (120, 90, 60))
+    gltf["images"] = [{"uri": uri("image/png", picture)} for picture in (checker, rough, waves, stripes)]
+    gltf["textures"] = [{"source": i} for i in range(4)]
     gltf["materials"][TILES]["pbrMetallicRoughness"] |= {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}}
+    gltf["materials"][LAMP]["emissiveTexture"] = {"index": 3}
     gltf["materials"][BENT]["normalTexture"] = {"index": 2, "scale": 0.8}
 
 
@@ -62,9 +64,10 @@ def turn(axis, degrees):
     return [math.sin(half) * (axis == i) for i in range(3)] + [math.cos(half)]
 
 
+# The bent wall is as rough as where reflections go from rays to prefiltered radiance: it has both.
 WALL, RED, TILES, BENT, GLOSSY, MIRROR, LAMP, GOLD = range(8)
 materials = [surface("wall", [0.75, 0.75, 0.72]), surface("red", [0.6, 0.12, 0.1], 0.7), surface("tiles", [1, 1, 1]),
-             surface("bent", [0.5, 0.55, 0.6], 0.5), surface("glossy", [0.25, 0.3, 0.35], 0.2), surface("mirror", [0.9, 0.9, 0.9], 0, 1),
+             surface("bent", [0.5, 0.55, 0.6], 0.4), surface("glossy", [0.25, 0.3, 0.35], 0.2), surface("mirror", [0.9, 0.9, 0.9], 0, 1),
              lamp("lamp", [1, 0.8, 0.5], 12), surface("gold", [1, 0.75, 0.35], 0.3, 1)]
 
 room = Room()
@@ -86,12 +89,16 @@ add_textures(gltf)
 add_mesh(gltf, mesh_of(boxes), {"translation": [0.9, 0, -0.7], "rotation": turn(1, 25), "scale": [0.6, 1.1, 0.8]})
 add_mesh(gltf, mesh_of(gold), {"translation": [-0.9, 0, -0.2], "rotation": turn(1, -35), "scale": [0.7, 0.6, 0.5]})
 
-# Down through the open part of the roof: a node above turns the light's about y.
+# A node's transform with another's within it: what is turned up or down first, and then about y.
+def add_turned(yaw, place, down, what):
+    gltf["nodes"].append({"rotation": turn(0, -down)} | what)
+    gltf["nodes"].append({"rotation": turn(1, yaw), "translation": place, "children": [len(gltf["nodes"]) - 1]})
+    return len(gltf["nodes"]) - 2
+
+
 gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "name": "sun", "color": [1, 0.95, 0.85], "intensity": 4}]}}
 gltf["extensionsUsed"].append("KHR_lights_punctual")
-gltf["nodes"].append({"rotation": turn(0, -55), "extensions": {"KHR_lights_punctual": {"light": 0}}})
-children = [len(gltf["nodes"]) - 1]
-gltf["nodes"].append({"rotation": turn(1, 25), "children": children})
-gltf["nodes"].append({"camera": 0, "name": "corner", "translation": [-1.7, 1.8, 1.6], "rotation": turn(1, -40)})
+children = [add_turned(25, [0, 0, 0], 55, {"extensions": {"KHR_lights_punctual": {"light": 0}}}),  # down through the open part of the roof
+            add_turned(-55, [-1.7, 1.9, 0.9], 28, {"camera": 0, "name": "corner"})]
 gltf["scenes"] = [{"nodes": [i for i in range(len(gltf["nodes"])) if i not in children]}]
 json.dump(gltf, sys.stdout)
