@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A room that has in it all that a host must get right, as glTF on stdout: the sun through an open roof, a lamp, walls of all roughnesses with a
-mirror among them, textures of every kind, nodes that are turned and scaled unevenly, and two cameras.
+mirror among them and one that shows its back, textures of every kind, nodes that are turned and scaled unevenly, and two cameras.
 room.py > room.gltf"""
 import base64, io, json, math, pathlib, struct, sys, zlib
 
@@ -74,7 +74,7 @@ room = Room()
 room.quad([-2, 0, 2], [4, 0, 0], [0, 0, -4], GLOSSY)        # floor
 room.quad([-2, 0, -2], [4, 0, 0], [0, 2.5, 0], BENT)        # back wall
 room.quad([-2, 0, 2], [0, 0, -4], [0, 2.5, 0], RED)         # left
-room.quad([2, 0, -2], [0, 0, 4], [0, 2.5, 0], TILES)        # right
+room.quad([2, 0, 2], [0, 0, -4], [0, 2.5, 0], TILES)        # right, its back to the room: it is seen from both sides
 room.quad([2, 0, 2], [-4, 0, 0], [0, 2.5, 0], WALL)         # behind the camera
 room.quad([-2, 2.5, -2], [4, 0, 0], [0, 0, 2.2], WALL)      # roof, open to the front
 room.quad([-1.2, 0.5, -1.98], [1.2, 0, 0], [0, 1.2, 0], MIRROR)
