@@ -72,9 +72,9 @@ materials = [surface("wall", [0.75, 0.75, 0.72]), surface("red", [0.6, 0.12, 0.1
 
 room = Room()
 room.quad([-2, 0, 2], [4, 0, 0], [0, 0, -4], GLOSSY)        # floor
-room.quad([-2, 0, -2], [4, 0, 0], [0, 2.5, 0], BENT)        # back wall
+room.quad([2, 0, -2], [-4, 0, 0], [0, 2.5, 0], BENT)        # back wall, its back to the room: surfaces have two sides
 room.quad([-2, 0, 2], [0, 0, -4], [0, 2.5, 0], RED)         # left
-room.quad([2, 0, 2], [0, 0, -4], [0, 2.5, 0], TILES)        # right, its back to the room: it is seen from both sides
+room.quad([2, 0, -2], [0, 0, 4], [0, 2.5, 0], TILES)        # right
 room.quad([2, 0, 2], [-4, 0, 0], [0, 2.5, 0], WALL)         # behind the camera
 room.quad([-2, 2.5, -2], [4, 0, 0], [0, 0, 2.2], WALL)      # roof, open to the front
 room.quad([-1.2, 0.5, -1.98], [1.2, 0, 0], [0, 1.2, 0], MIRROR)
