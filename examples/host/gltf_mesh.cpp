@@ -301,7 +301,8 @@ tinygltf::Model parse(const std::filesystem::path& file)
     const bool binary = file.extension() == ".glb";
     const bool read = binary ? parser.LoadBinaryFromFile(&model, &error, &warning, file.string())
                              : parser.LoadASCIIFromFile(&model, &error, &warning, file.string());
-    if (!read) throw std::runtime_error("'" + file.string() + "' can't be read as glTF: " + error);
+    while (!error.empty() && (error.back() == '\n' || error.back() == '.')) error.pop_back();
+    if (!read) throw std::runtime_error("'" + file.string() + "' can't be read as glTF: " + error + "; check the path, or export it again");
     return model;
 }
 
@@ -318,6 +319,7 @@ Model loadGltf(const std::filesystem::path& file, glm::vec3 axes)
     for (const int root : at(source.scenes, scene, "scene").nodes) addNode(source, root, hostFromFile, 1, seen, model);
     if (model.indices.empty())
         throw std::runtime_error("'" + file.string() + "' has no triangles in its default scene; export its meshes, too");
+    if (!model.sun) model.warnings.push_back("There is no directional light, so no sun is drawn.");
     model.low = model.high = model.vertices.front().position;
     for (const Vertex& vertex : model.vertices)
     {

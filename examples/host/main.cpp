@@ -168,6 +168,11 @@ int main(int argc, char** argv)
         std::fprintf(stderr, "host: %s\n", misuse.what());
         return 2;
     }
+    catch (const vk::SystemError& failure)
+    {
+        std::fprintf(stderr, "host: the device refused: %s; ask for a smaller picture, or see what --validation says\n", failure.what());
+        return 1;
+    }
     catch (const std::exception& failure)
     {
         std::fprintf(stderr, "host: %s\n", failure.what());

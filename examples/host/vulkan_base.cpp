@@ -128,6 +128,10 @@ Memory Vulkan::allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyF
 
 Image Vulkan::makeImage(vk::Format format, vk::Extent2D size, vk::ImageUsageFlags usage, uint32_t mips) const
 {
+    const uint32_t limit = physicalDevice.getProperties().limits.maxImageDimension2D;
+    if (std::max(size.width, size.height) > limit)
+        throw std::runtime_error("a picture of " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                                 " pixels is larger than the device's " + std::to_string(limit) + " a side; make it smaller");
     Image made;
     made.format = format;
     made.size = size;
