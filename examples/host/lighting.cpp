@@ -38,8 +38,15 @@ std::vector<vk::DescriptorType> bindings()
 Lighting::Lighting(const Vulkan& vulkan, vk::Extent2D size) : gpu(vulkan)
 {
     using Usage = vk::ImageUsageFlagBits;
-    for (Image& picture : pictures)
-        picture = gpu.makeImage(vk::Format::eR32G32B32A32Sfloat, size, Usage::eStorage | Usage::eSampled | Usage::eTransferSrc);
+    for (Image& picture : pictures) picture = gpu.makeImage(vk::Format::eR32G32B32A32Sfloat, size, Usage::eStorage | Usage::eTransferSrc);
+    empty = gpu.makeImage(vk::Format::eR32G32B32A32Sfloat, {1, 1}, Usage::eSampled);
+    gpu.run(
+        [&](vk::CommandBuffer cmd)
+        {
+            using Stage = vk::PipelineStageFlagBits2;
+            constexpr Use read{vk::ImageLayout::eGeneral, Stage::eComputeShader, vk::AccessFlagBits2::eShaderSampledRead};
+            transition(cmd, empty, {vk::ImageLayout::eUndefined, Stage::eNone, {}}, read);
+        });
     block = gpu.makeBuffer(sizeof(Block), vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eTransferDst, false);
     comparing = vk::raii::Sampler(gpu.device, {.magFilter = vk::Filter::eLinear,
                                                .minFilter = vk::Filter::eLinear,

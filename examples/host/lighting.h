@@ -26,10 +26,11 @@ public:
 
     /// Radiance to the eye, rgb: direct light with emission and sky; indirect light scattered by surfaces; reflected by them; the sum.
     std::array<Image, 4> pictures;
-    vk::ImageView nothing() const { return *pictures[0].view; } // to bind in place of a term that isn't made
+    vk::ImageView nothing() const { return *empty.view; } // to bind in place of a term that isn't made
 
 private:
     const Vulkan& gpu;
+    Image empty; // never read, but bound: it may be none that the pass writes
     Buffer block;
     Indirect indirect;
     vk::raii::Sampler comparing = nullptr;

@@ -66,10 +66,10 @@ endfunction()
 # planted to see whether they are found: normals or an eye of the wrong hand 0.06 to 0.1 of reflections, prefiltered reflections added whole beside
 # rays, rays from another roughness or from a hundred times as far off their surface 2e-4 to 7e-4 of them, albedo in place of what the diffuse lobe
 # reflects 7e-4 of diffuse light.
-function(compare_pictures name camera command_options host_options)
-    step("${name} by the command" ${sconce} render ${WORK}/room.gltf --field ${WORK}/room.sconce --size 240x135 --camera ${camera} ${command_options}
+function(compare_pictures name scene camera command_options host_options)
+    step("${name} by the command" ${sconce} render ${WORK}/${scene}.gltf --field ${WORK}/${scene}.sconce --size 240x135 --camera ${camera} ${command_options}
          -o ${WORK}/${name}_command.exr)
-    step("${name} by the host" ${WORK}/host/host ${WORK}/room.gltf ${WORK}/room.sconce -o ${WORK}/${name}.exr --size 240x135 --camera ${camera} --validation
+    step("${name} by the host" ${WORK}/host/host ${WORK}/${scene}.gltf ${WORK}/${scene}.sconce -o ${WORK}/${name}.exr --size 240x135 --camera ${camera} --validation
          ${host_options})
     expect("${name}: all that was lent" "afterwards 0 bytes of device memory and 0 blocks of main memory, of [1-9]")
     foreach(limit direct:relmse=2e-3 diffuse_indirect:relmse=5e-6 glossy_indirect:relmse=1e-4 beauty:relmse=1e-3 beauty:flip=0.01)
@@ -98,11 +98,12 @@ endforeach()
 step("Bake of the room" ${sconce} bake ${WORK}/room.gltf --probes ${here}/probes.json -o ${WORK}/room.sconce --resolution 128 --bounces 3)
 step("Bake of the furnace" ${sconce} bake ${WORK}/furnace.gltf --probes ${here}/middle.json -o ${WORK}/furnace.sconce --resolution 128)
 
-compare_pictures(right_handed 0 "" "")
-compare_pictures(left_handed 0 "" "--left-handed")
+compare_pictures(right_handed room 0 "" "")
+compare_pictures(left_handed room 0 "" "--left-handed")
 step("Left-handed is right-handed" ${sconce} compare ${WORK}/left_handed.exr ${WORK}/right_handed.exr --fail-above relmse=1e-8) # 5e-12
-compare_pictures(corner 1 "" "--left-handed")
-compare_pictures(temporal 0 "--temporal;--frames;3" "--frames;3")
+compare_pictures(corner room 1 "" "--left-handed")
+compare_pictures(temporal room 0 "--temporal;--frames;3" "--frames;3")
+compare_pictures(in_the_furnace furnace 0 "" "") # neither rays nor mirrors: their terms are not made
 
 # In a closed box whose walls emit L = 1 and reflect a = 0.5099 of what arrives (white light on a rough dielectric of base colour 0.5, by
 # hemisphericalAlbedo() of brdf.h), all light is L / (1 - a) = 2.040 from every side: irradiance pi times that, 6.41, of which surfaces reflect
