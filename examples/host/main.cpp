@@ -121,6 +121,9 @@ void draw(const Vulkan& vulkan, Allocators& lent, const Options& options)
     const SunShadow shadow(vulkan, scene, sun);
     Lighting lighting(vulkan, size);
     SconceGi gi(vulkan, lent, options.field, size, options.frames > 1);
+    if (!gi.hasAllDiffuse())
+        std::fprintf(stderr, "host: '%s' holds no surface light, and this host draws no light straight from lamps and sky: it is missing\n",
+                     options.field.c_str());
     gi.setGBuffer({*gbuffer.depth.view, *gbuffer.normalRoughness.view, *gbuffer.baseColorMetallic.view});
     lighting.setInputs(gbuffer, shadow, {gi.terms(lighting.nothing()), gi.made(), gi.sky()});
     for (uint32_t frame = 0; frame < options.frames; ++frame)

@@ -32,6 +32,8 @@ public:
     std::array<VkImageView, 4> terms(VkImageView nothing) const;
     uint32_t made() const; // bits of those that are
     glm::vec3 sky() const { return field->info().sky; }
+    /// Whether diffuse light has emitters and sky in it; else they are the host's to draw, as the sun is.
+    bool hasAllDiffuse() const { return field->holdsSurfaceLight(); }
     uint64_t bytes() const { return device->bytes(); } // of device memory, by the library's own count
 
 private:
