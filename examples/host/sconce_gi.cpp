@@ -1,0 +1,80 @@
+#include "sconce_gi.h"
+
+#include <stdexcept>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace
+{
+
+template <class T> T valueOf(sconce::Result<T> result)
+{
+    if (!result) throw std::runtime_error(result.error().message);
+    return std::move(*result);
+}
+
+} // namespace
+
+std::vector<std::string> SconceGi::missing(VkInstance instance, VkPhysicalDevice device)
+{
+    return sconce::missingFeatures(vkGetInstanceProcAddr, instance, device);
+}
+
+SconceGi::SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem::path& file, VkExtent2D wanted, bool temporal)
+    : size(wanted)
+{
+    sconce::HostVulkan host;
+    host.instance = *vulkan.instance;
+    host.physicalDevice = *vulkan.physicalDevice;
+    host.device = *vulkan.device;
+    host.queueFamily = vulkan.family;
+    host.queue = *vulkan.queue;
+    host.getInstanceProcAddr = vkGetInstanceProcAddr;
+    host.allocationCallbacks = lent.main.callbacks();
+    host.allocateMemory = [&lent](const VkMemoryAllocateInfo& info, VkDeviceMemory& got) { return lent.device.allocate(info, got); };
+    host.freeMemory = [&lent](VkDeviceMemory back) { lent.device.free(back); };
+    device = valueOf(sconce::Device::create(host));
+    field = valueOf(sconce::LightField::load(*device, file));
+    sconce::IndirectLight::Desc desc{.width = size.width, .height = size.height, .effects = field->effectsOfFrames()};
+    desc.effects.temporal = temporal;
+    light = valueOf(sconce::IndirectLight::create(*device, *field, desc));
+}
+
+void SconceGi::record(VkCommandBuffer cmd, const Camera& camera, Convention convention, uint32_t seed)
+{
+    // The light field's world is glTF's. A host whose own is another turns the camera here, and its normals where it writes them.
+    const glm::vec3 axes = convention.axes();
+    const glm::dmat4 turned = glm::scale(glm::dmat4(1.0), glm::dvec3(axes));
+    const auto clipFromField = [&](const Camera& c) { return clipFromWorld(c, convention, double(size.width) / size.height) * turned; };
+    sconce::gpu::FrameView view{};
+    view.worldFromClip = glm::inverse(clipFromField(camera));
+    view.eye = axes * camera.eye;
+    view.seed = seed;
+    view.size = {size.width, size.height};
+    view.glossyRays = sconce::knobs::glossyRays.value;
+    view.normalOffset = sconce::knobs::normalOffset.value * field->info().diagonal * field->info().scale;
+    view.raysBelow = sconce::knobs::raysBelow.value;
+    if (before)
+    {
+        view.follows = 1;
+        view.eyeBefore = axes * before->eye;
+        view.clipFromWorldBefore = clipFromField(*before);
+    }
+    before = camera;
+    light->record(cmd, view);
+}
+
+std::array<VkImageView, 4> SconceGi::terms(VkImageView nothing) const
+{
+    std::array<VkImageView, 4> views{light->diffuse().view, light->rough().view, light->glossy().view, light->mirror().view};
+    for (VkImageView& view : views)
+        if (!view) view = nothing;
+    return views;
+}
+
+uint32_t SconceGi::made() const
+{
+    const auto bit = [](const sconce::IndirectLight::Output& output, uint32_t term) { return output.view ? 1u << term : 0u; };
+    return bit(light->diffuse(), sconce::gpu::kTermDiffuse) | bit(light->rough(), sconce::gpu::kTermRough) |
+           bit(light->glossy(), sconce::gpu::kTermGlossy) | bit(light->mirror(), sconce::gpu::kTermMirror);
+}

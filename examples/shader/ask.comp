@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "light_field.glsl"
+#include "ask.h"
+#if SCONCE_GLSL_VERSION != 1
+#error "written for version 1 of light_field.glsl: read its change note"
+#endif
+
+// A shader of a host that asks the light field what it wants to know: irradiance, a ray, and whether light reaches a point. The field's set is bound
+// at SCONCE_FIELD_SET, which is 0 where nothing else is said; the constants 0 and 1 are LightField::constants().
+layout(local_size_x = 1) in;
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer AnswerAt { Answer answer; };
+layout(scalar, push_constant) uniform Push { Question question; };
+
+void main()
+{
+    Answer a;
+    // Light at a point is asked in field space, and of the leaf of a point half a voxel off the surface, whose probes are on its side.
+    vec3 point = (question.point - field.origin) / field.scale;
+    vec3 lookUp = point + 0.5 * field.voxel * question.normal;
+    int reads = 0; // is added to
+    a.arriving = vec3(-1.0);
+    if (field.surfaceSize > 0u) a.arriving = surfaceLightAt(point, question.normal, question.normal, lookUp, reads).light;
+    a.reflected = irradianceAt(point, question.normal, lookUp, reads);
+
+    // Rays are asked in the world's metres. They start a little off their surface.
+    vec3 start = question.point + 1e-4 * field.diagonal * field.scale * question.normal;
+    RayHit hit = sconceQuery(start, question.direction, question.normal);
+    a.status = hit.status;
+    a.distance = hit.t;
+    a.place = hit.position;
+    a.facing = hit.normal;
+    a.radiance = hit.radiance;
+
+    vec3 to = question.light - start;
+    float away = max(length(to), 1e-6);
+    a.reaches = dot(to, question.normal) > 0.0 && lightReaches(start, to / away, away, question.normal) ? 1u : 0u;
+    AnswerAt(question.answer).answer = a;
+}
