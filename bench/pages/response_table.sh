@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # How light follows a lamp of hall that is switched on: live light, with the whole field and a sixteenth of its probes a frame, beside what an irradiance
 # volume of the same rays leaves after blending (Majercik et al. 2021, hysteresis 0.97, gamma 1 and 5). Prints bench/results/light_response.json.
-# Environment: SCONCE, RESPONSE=the programs, built when not given, COUNT=probes [24], RESOLUTION=texels [192], LINKS=live links a texel [16],
+# Environment: SCONCE, RESPONSE=the programs, built when not given, COUNT=probes [32], RESOLUTION=texels [192], LINKS=live links a texel [16],
 # LAMP=its place [10,5,0], FRAMES=that are followed [300], OUT=folder, whose field is kept [out/response].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -11,7 +11,7 @@ sconce=${SCONCE:-build/release/tools/sconce} response=${RESPONSE:-build/release/
 mkdir -p "$out"
 echo "{\"lights\": [{\"type\": \"point\", \"position\": [$lamp], \"intensity\": [40, 36, 30]}]}" > "$out/lamp.json"
 [[ -f $out/hall.sconce ]] || {
-    "$sconce" place hall --count "${COUNT:-24}" -o "$out/hall.json" --quiet > /dev/null
+    "$sconce" place hall --count "${COUNT:-32}" -o "$out/hall.json" --quiet > /dev/null
     "$sconce" bake hall --lights "$out/lamp.json" --probes "$out/hall.json" --resolution "${RESOLUTION:-192}" --live-links "${LINKS:-16}" -o "$out/hall.sconce" --quiet > /dev/null
 }
 "$response" "$out/hall.sconce" --frames "$frames" > "$out/curve.txt"
