@@ -85,6 +85,8 @@ public:
     const std::vector<std::string>& effects() const;
     /// What a frame in its scene needs of indirect light, by these effects: what isn't called for costs nothing.
     IndirectEffects effectsOfFrames() const;
+    /// A frame's view with every default, of this field; its camera, seed and what it follows are the host's.
+    gpu::FrameView frameView(uint32_t width, uint32_t height) const;
     /// Takes effect for command buffers submitted after it. Not while the GPU reads the field. Errors: badArgument (names the knob).
     Status setQuality(const Quality& quality);
 
@@ -196,7 +198,7 @@ public:
                                                        // the rest from it: shaders/reconstruct.comp. Mirrors are traced at every pixel
         bool counts = false;                           // write what each pixel's ray cost: an image of 16 bytes a pixel
     };
-    /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL; all null when the effect is off.
+    /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL, to be sampled or read as a storage image; all null when the effect is off.
     struct Output
     {
         VkImage image = VK_NULL_HANDLE;

@@ -88,3 +88,24 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/ray_query.h"
 /// A world-space ray through the light field. `normal`: of the surface it starts on, unit, or 0; see Ray.
 RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return queryRay(origin, direction, normal); }
+
+// Light at a point of the world, metres. It is asked of the probes of a point half a voxel off the surface, which are on its side.
+vec3 sconceFieldPoint(vec3 point) { return (point - field.origin) / field.scale; }
+vec3 sconceLookUp(vec3 point, vec3 facing) { return sconceFieldPoint(point) + 0.5 * field.voxel * facing; }
+
+/// Mean of the radiance that arrives at a surface, weighted by the cosine, of all light but the host's own: of a field with surface light
+/// (field.surfaceSize > 0). What moves is lit by what is known in the open about it. Cost: about 25 reads.
+/// @param normal  for shading, unit
+/// @param facing  of the surface itself, unit, on the side that is looked at
+vec3 sconceLightAt(vec3 point, vec3 normal, vec3 facing)
+{
+    int reads = 0;
+    return surfaceLightAt(sconceFieldPoint(point), normal, facing, sconceLookUp(point, facing), reads).light;
+}
+
+/// The same, anywhere and of any field, of what surfaces reflect alone: no light straight from emitters and sky. Cost: about 15 reads.
+vec3 sconceIrradianceAt(vec3 point, vec3 normal)
+{
+    int reads = 0;
+    return irradianceAt(sconceFieldPoint(point), normal, sconceLookUp(point, normal), reads);
+}

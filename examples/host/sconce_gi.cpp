@@ -46,14 +46,10 @@ void SconceGi::record(VkCommandBuffer cmd, const Camera& camera, Convention conv
     const glm::vec3 axes = convention.axes();
     const glm::dmat4 turned = glm::scale(glm::dmat4(1.0), glm::dvec3(axes));
     const auto clipFromField = [&](const Camera& c) { return clipFromWorld(c, convention, double(size.width) / size.height) * turned; };
-    sconce::gpu::FrameView view{};
+    sconce::gpu::FrameView view = field->frameView(size.width, size.height);
     view.worldFromClip = glm::inverse(clipFromField(camera));
     view.eye = axes * camera.eye;
     view.seed = seed;
-    view.size = {size.width, size.height};
-    view.glossyRays = sconce::knobs::glossyRays.value;
-    view.normalOffset = sconce::knobs::normalOffset.value * field->info().diagonal * field->info().scale;
-    view.raysBelow = sconce::knobs::raysBelow.value;
     if (before)
     {
         view.follows = 1;

@@ -15,15 +15,11 @@ layout(scalar, push_constant) uniform Push { Question question; };
 void main()
 {
     Answer a;
-    // Light at a point is asked in field space, and of the leaf of a point half a voxel off the surface, whose probes are on its side.
-    vec3 point = (question.point - field.origin) / field.scale;
-    vec3 lookUp = point + 0.5 * field.voxel * question.normal;
-    int reads = 0; // is added to
     a.arriving = vec3(-1.0);
-    if (field.surfaceSize > 0u) a.arriving = surfaceLightAt(point, question.normal, question.normal, lookUp, reads).light;
-    a.reflected = irradianceAt(point, question.normal, lookUp, reads);
+    if (field.surfaceSize > 0u) a.arriving = sconceLightAt(question.point, question.normal, question.normal);
+    a.reflected = sconceIrradianceAt(question.point, question.normal);
 
-    // Rays are asked in the world's metres. They start a little off their surface.
+    // Rays start a little off their surface.
     vec3 start = question.point + 1e-4 * field.diagonal * field.scale * question.normal;
     RayHit hit = sconceQuery(start, question.direction, question.normal);
     a.status = hit.status;

@@ -247,6 +247,16 @@ const std::vector<std::string>& LightField::effects() const
     return shared->effects;
 }
 
+gpu::FrameView LightField::frameView(uint32_t width, uint32_t height) const
+{
+    gpu::FrameView view{};
+    view.size = {width, height};
+    view.glossyRays = knobs::glossyRays.value;
+    view.raysBelow = knobs::raysBelow.value;
+    view.normalOffset = knobs::normalOffset.value * info().diagonal * info().scale;
+    return view;
+}
+
 IndirectEffects LightField::effectsOfFrames() const
 {
     const auto called = [&](const char* name) { return std::ranges::find(shared->effects, name) != shared->effects.end(); };

@@ -6,7 +6,8 @@ SCONCE_STRUCTS_BEGIN
 
 struct FrameView
 {
-    mat4 worldFromClip;  // of the camera the G-buffer was drawn with; its depth is reversed: 1 at the near plane, 0 at infinity
+    mat4 worldFromClip;  // of the camera the G-buffer was drawn with; its depth is reversed: 1 at the near plane, 0 at infinity; y is -1 at the
+                         // picture's first row
     vec3 eye;            // world, metres
     uint seed;           // changes from frame to frame
     uvec2 size;          // pixels
