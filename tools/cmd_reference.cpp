@@ -34,15 +34,19 @@ struct ReferenceOptions
 };
 
 /// Traced in batches until its noise is small enough, each kept, or at once.
-Result<Reference> traced(const Scene& scene, const ReferenceSettings& settings, const ReferenceOptions& options, uint64_t& paths,
-                         const Progress& progress)
+Result<KeptReference> traced(const Scene& scene, const ReferenceSettings& settings, const ReferenceOptions& options,
+                             const Progress& progress)
 {
-    paths = settings.samples;
-    if (options.keep.empty()) return renderReference(scene, settings, progress);
+    if (options.keep.empty())
+    {
+        auto once = renderReference(scene, settings, progress);
+        if (!once) return once.error();
+        return KeptReference{std::move(*once), settings.samples};
+    }
     if (std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, std::move(fault)};
     const Result<RayScene> rays = RayScene::create(scene);
     if (!rays) return rays.error();
-    return keptReference(*rays, keyOf(scene), settings, {options.keep, options.until}, paths, progress);
+    return keptReference(*rays, keyOf(scene), settings, {options.keep, options.until}, progress);
 }
 
 int runReference(const ReferenceOptions& options, const Context& context)
@@ -62,9 +66,10 @@ int runReference(const ReferenceOptions& options, const Context& context)
     settings.camera = *camera;
     if (options.until > 0.0 && options.keep.empty())
         return fail(ErrorCode::badArgument, "--until adds batches of paths, which are kept; give the folder with --keep.");
-    uint64_t paths = 0;
-    Result<Reference> reference = traced(*scene, settings, options, paths, consoleProgress(context));
-    if (!reference) return fail(reference.error());
+    const Result<KeptReference> kept = traced(*scene, settings, options, consoleProgress(context));
+    if (!kept) return fail(kept.error());
+    const Reference* const reference = &kept->reference;
+    const uint64_t paths = kept->paths;
     if (reference->nonFinitePaths > 0)
         note(context, fmt::format("Note: {} paths were not finite and were left out.", reference->nonFinitePaths));
     Json json;

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Makes the pages' result files of what `sconce bench` and `sconce_ray_accuracy` measured.
 
-    python3 bench/pages/bench_rows.py methods RESULTS.json...   bench/results/scene_methods.json and scene_targets.json, a scene of each run
+    bench/pages/methods_table.sh                                bench/results/scene_methods.json and scene_targets.json, a scene of each run
     python3 bench/pages/bench_rows.py knobs RESULTS.json        bench/results/knobs.json: one scene's knobs
     bench/pages/leaks_sheet.sh                                  bench/results/walls.json
     bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
     bench/pages/response_table.sh                               bench/results/light_response.json
+    bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -79,7 +80,7 @@ def scenes_of(files):
     scenes, commands = {}, []
     for file in files:
         results = json.loads(Path(file).read_text())
-        commands += [" ".join(["sconce", *re.sub(r" -o \S+", "", command).split()[1:]]) for command in results["commands"] if command not in commands]
+        commands += [" ".join(["sconce", *re.sub(r" (-o \S+|--quiet)", "", command).split()[1:]]) for command in results["commands"] if command not in commands]
         for scene in results["scenes"]:
             if scene.get("points"):
                 scenes[NAMED.get(scene["source"], scene["name"])] = scene
@@ -313,8 +314,22 @@ def response(arguments):
            "blended: an irradiance volume's blending (Majercik et al. 2021) at every texel, fed without noise: what rays a frame it has doesn't show"], rows)
 
 
+def bounces(arguments):
+    """Of the lines that bounces_table.sh prints, and over them least and most."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    keys = [key for key in next(iter(rows.values())) if key != "label"]
+    rows["all"] = {"label": "least and most", "scenes": str(len(rows))} | {key: least_and_most([row[key] for row in rows.values()]) for key in keys}
+    write("bounces.json", "The mean of a view's indirect light over the path tracer's, both with as many bounces", ["bench/pages/bounces_table.sh"],
+          ["diffuse_N, glossy_N, picture_N: of N bounces; pixels in which both see the same surface"], rows)
+
+
+def least_and_most(texts):
+    numbers = sorted((float(text), text) for text in texts if text != "nan")
+    return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
+
+
 if __name__ == "__main__":
-    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response}
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

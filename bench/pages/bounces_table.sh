@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Light bounce by bounce: the mean of a view's indirect light over the path tracer's, both with as many bounces. Prints the rows of
-# bench/results/bounces.json.
+# bench/results/bounces.json, and writes it where no scene is given.
 # bounces_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH of the pictures
 # [320x180], SPP=paths a pixel [128], RESOLUTION=texels [256], BOUNCES=counts ["1 2 4 8"], OUT=folder, whose references are kept [out/bounces].
 set -euo pipefail
@@ -36,4 +36,5 @@ row = {"label": f"{name}, {count}"} | {f"{key}_{b}": mean(b, layer) for key, lay
        (("diffuse", "diffuse_indirect"), ("glossy", "glossy_indirect"), ("picture", "beauty")) for b in bounces.split()}
 print(f'  "{name.lower().replace("-", "_")}": {json.dumps(row)},', flush=True)
 P
-done
+done | tee "$out/rows.txt"
+[[ $# -gt 0 ]] || python3 bench/pages/bench_rows.py bounces "$out/rows.txt"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -47,30 +48,26 @@ std::string pictureKey(const RayScene& rays, const std::string& scene, const Ref
     return keyOf(all);
 }
 
-struct Kept
-{
-    Reference reference;
-    uint64_t paths = 0; // a pixel; 0: nothing is kept
-};
-
 std::filesystem::path pictureOf(const std::filesystem::path& folder, const std::string& key, uint64_t paths)
 {
     return folder / fmt::format("{}-{}.exr", key, paths);
 }
 
 /// Nothing where there is none, or not a whole one: then it is traced again.
-Kept readKept(const std::filesystem::path& folder, const std::string& key)
+KeptReference readKept(const std::filesystem::path& folder, const std::string& key)
 {
     std::ifstream file(folder / (key + ".json"), std::ios::binary);
     const Json json = Json::parse(file, nullptr, false);
     if (!json.is_object() || !json.value("paths", Json()).is_number_unsigned() || !json.value("relmse", Json()).is_array() ||
         json["relmse"].size() != 3 || !json.value("non_finite_paths", Json()).is_number_unsigned() ||
+        !json.value("seconds", Json()).is_number() ||
         !std::ranges::all_of(json["relmse"], [](const Json& value) { return value.is_number(); }))
         return {};
-    Kept kept;
+    KeptReference kept;
     auto images = readExr(pictureOf(folder, key, json["paths"].get<uint64_t>()));
     if (!images) return {};
     kept.paths = json["paths"].get<uint64_t>();
+    kept.seconds = json["seconds"].get<double>();
     kept.reference.images = std::move(*images);
     kept.reference.estimatedRelMse = json["relmse"][0].get<double>();
     kept.reference.estimatedRelMseDiffuse = json["relmse"][1].get<double>();
@@ -80,13 +77,14 @@ Kept readKept(const std::filesystem::path& folder, const std::string& key)
 }
 
 /// The picture first, under a name of its own, so that what the text names is always whole; then the one before may go.
-Status writeKept(const std::filesystem::path& folder, const std::string& key, const Kept& kept, uint64_t before)
+Status writeKept(const std::filesystem::path& folder, const std::string& key, const KeptReference& kept, uint64_t before)
 {
     const Reference& r = kept.reference;
     if (auto status = writeExr(r.images, pictureOf(folder, key, kept.paths)); !status) return status;
     const Json json = {{"paths", kept.paths},
                        {"relmse", {r.estimatedRelMse, r.estimatedRelMseDiffuse, r.estimatedRelMseGlossy}},
-                       {"non_finite_paths", r.nonFinitePaths}};
+                       {"non_finite_paths", r.nonFinitePaths},
+                       {"seconds", kept.seconds}};
     if (auto status = writeText(folder / (key + ".json"), json.dump()); !status) return status;
     std::error_code ignored; // a picture too many does no harm
     if (before > 0) std::filesystem::remove(pictureOf(folder, key, before), ignored);
@@ -95,8 +93,8 @@ Status writeKept(const std::filesystem::path& folder, const std::string& key, co
 
 } // namespace
 
-Result<Reference> keptReference(const RayScene& rays, const std::string& scene, const ReferenceSettings& first, const KeepReference& keep,
-                                uint64_t& paths, const Progress& progress)
+Result<KeptReference> keptReference(const RayScene& rays, const std::string& scene, const ReferenceSettings& first,
+                                    const KeepReference& keep, const Progress& progress)
 {
     if (first.samples < 2 || (first.parts && first.samples % 4 != 0))
         return Error{ErrorCode::badArgument,
@@ -107,7 +105,7 @@ Result<Reference> keptReference(const RayScene& rays, const std::string& scene, 
         return Error{ErrorCode::fileError,
                      fmt::format("Cannot make the folder '{}' of references: {}; give another.", keep.folder.string(), failed.message())};
     const std::string key = pictureKey(rays, scene, first);
-    Kept kept = readKept(keep.folder, key);
+    KeptReference kept = readKept(keep.folder, key);
     const auto noise = [&] { return std::max(kept.reference.estimatedRelMseDiffuse, kept.reference.estimatedRelMseGlossy); };
     while (kept.paths == 0 || (keep.until > 0.0 && !(noise() <= keep.until) && kept.paths < keep.mostPaths))
     {
@@ -116,15 +114,16 @@ Result<Reference> keptReference(const RayScene& rays, const std::string& scene, 
         // Whole times the first batch, so that the parts stay parts of four.
         const uint64_t most = (keep.mostPaths - std::min<uint64_t>(kept.paths, keep.mostPaths) + first.samples - 1) / first.samples;
         batch.samples = uint32_t(std::max<uint64_t>(std::min(kept.paths / first.samples, most), 1) * first.samples);
+        const auto begin = std::chrono::steady_clock::now();
         auto traced = renderReference(rays, batch, progress);
         if (!traced) return traced.error();
+        kept.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         const uint64_t before = kept.paths;
         kept.reference = before == 0 ? std::move(*traced) : joined(kept.reference, before, *traced, batch.samples);
         kept.paths = before + batch.samples;
         if (auto status = writeKept(keep.folder, key, kept, before); !status) return status.error();
     }
-    paths = kept.paths;
-    return std::move(kept.reference);
+    return kept;
 }
 
 } // namespace sconce

@@ -218,19 +218,18 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
     settings.roughness = roughness;
     settings.camera = camera;
     if (auto status = makeTruth(); !status) return status;
-    const double begin = secondsNow();
-    uint64_t paths = 0;
-    auto reference = keptReference(*truth, fields.sceneKey(), settings,
-                                   {fields.cached("references", "", "").parent_path(), desc.settings.referenceUntil}, paths, progress);
-    if (!reference) return reference.error();
-    referenceJson = {{"spp", paths},
+    auto kept = keptReference(*truth, fields.sceneKey(), settings,
+                              {fields.cached("references", "", "").parent_path(), desc.settings.referenceUntil}, progress);
+    if (!kept) return kept.error();
+    Reference& reference = kept->reference;
+    referenceJson = {{"spp", kept->paths},
                      {"bounces", settings.bounces},
-                     {"seconds", secondsNow() - begin},
+                     {"seconds", kept->seconds},
                      {"estimated_relmse",
-                      {{"beauty", numberOrNull(reference->estimatedRelMse)},
-                       {"diffuse", numberOrNull(reference->estimatedRelMseDiffuse)},
-                       {"glossy", numberOrNull(reference->estimatedRelMseGlossy)}}}};
-    referenceImages = std::move(reference->images);
+                      {{"beauty", numberOrNull(reference.estimatedRelMse)},
+                       {"diffuse", numberOrNull(reference.estimatedRelMseDiffuse)},
+                       {"glossy", numberOrNull(reference.estimatedRelMseGlossy)}}}};
+    referenceImages = std::move(reference.images);
     return writeReferencePictures();
 }
 

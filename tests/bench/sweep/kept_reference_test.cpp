@@ -29,7 +29,10 @@ protected:
     }
     Result<Reference> kept(double until, uint64_t& paths, const Progress& progress = {}) const
     {
-        return keptReference(rays, key, settings, {folder / "references", until}, paths, progress);
+        auto found = keptReference(rays, key, settings, {folder / "references", until}, progress);
+        if (!found) return found.error();
+        paths = found->paths;
+        return std::move(found->reference);
     }
     size_t files() const
     {
