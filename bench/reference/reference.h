@@ -47,11 +47,11 @@ struct Reference
 /// Path traces the scene: next-event estimation to lights and emitters, multiple importance sampling with the reflection model of
 /// shaders/shared/brdf.h, threads by TBB. Errors: badArgument (names the field), badInput, outOfMemory, cancelled.
 Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress = {});
+/// The same without building the scene's hierarchy anew; the scene must be a valid one.
+Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress = {});
 /// What one picture of all paths would be, but for rounding. Of two with the same settings but for `samples` and `firstPath`, both
 /// multiples of 4 where they have parts.
 /// @param pathsA, pathsB  a pixel
 Reference joined(const Reference& a, uint64_t pathsA, const Reference& b, uint64_t pathsB);
-/// The same without building the scene's hierarchy anew; the scene must be a valid one.
-Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress = {});
 
 } // namespace sconce

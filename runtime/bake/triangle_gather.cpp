@@ -341,6 +341,7 @@ struct Gatherer : LightFieldTwin<float>
     {
         return uint(255.0f * grazing / kMostGrazing + 0.5f) << 24;
     }
+
     uint nearestTint(vec3 tint) const
     {
         uint nearest = 0;

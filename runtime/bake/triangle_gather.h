@@ -82,8 +82,6 @@ public:
     Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, std::span<const uint32_t> sent) const;
     /// Where the rays of such a place end.
     std::vector<uint32_t> linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const;
-    /// Whether a ray meets a triangle within a length, field units, and from behind.
-    bool meetsBack(vec3 point, vec3 direction, float length) const;
     /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in
     /// gathered_rays.h; 0 of metals.
     float grazingOf(float metallic, float roughness) const;
