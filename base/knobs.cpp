@@ -127,6 +127,8 @@ std::span<const KnobRow> knobRows()
                                               rowOf(height),
                                               rowOf(verticalFov),
                                               rowOf(exposure),
+                                              rowOf(panoramaWidth),
+                                              rowOf(explainedPaths),
                                               rowOf(light),
                                               rowOf(ranked),
                                               rowOf(opinion),

@@ -1,4 +1,5 @@
 // sconce bake and capture: the light field of a scene at given probes, lit or not.
+#include <algorithm>
 #include <iostream>
 
 #include <fmt/format.h>
@@ -95,6 +96,8 @@ int runBake(const BakeOptions& options, const Context& context)
                   << (report.tight > 0 ? fmt::format("; {} of them found no place between two surfaces: forbid or move them", report.tight)
                                        : "")
                   << "\n";
+    if (std::ranges::any_of(set->probes, [](const PlacedProbe& probe) { return !probe.why.empty(); }))
+        for (const PlacedProbe& probe : set->probes) field->why.push_back(probe.why);
     if (Status status = saveField(*field, options.output); !status) return fail(status.error());
     const double lightMs = 1e3 * (report.gatherSeconds + report.bounceSeconds) / double(positions.size());
     if (context.json)

@@ -138,6 +138,8 @@ void addReferenceCommands(CLI::App& app, Context& context);
 void addRelightCommand(CLI::App& app, Context& context);
 void addBenchCommand(CLI::App& app, Context& context);
 void addTuneCommand(CLI::App& app, Context& context);
+void addProbeCommand(CLI::App& app, Context& context);
+void addExplainCommand(CLI::App& app, Context& context);
 void addDoctorCommand(CLI::App& app, Context& context);
 
 } // namespace sconce::tools

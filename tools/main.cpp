@@ -24,6 +24,8 @@ int main(int argc, char** argv)
     addRelightCommand(app, context);
     addRenderCommand(app, context);
     addTraceCommand(app, context);
+    addProbeCommand(app, context);
+    addExplainCommand(app, context);
     addReferenceCommands(app, context);
     addBenchCommand(app, context);
     addTuneCommand(app, context);

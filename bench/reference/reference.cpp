@@ -165,6 +165,14 @@ struct Frame
         store(albedo, pixel, vec3(colors / double(count)));
     }
 
+    /// One path of a pixel. @param centre  direction through its centre
+    PathLight trace(uint32_t x, uint32_t y, uint32_t path, vec3 centre) const
+    {
+        Random random = randomOf(size_t(y) * settings.width + x, path);
+        const vec3 within = through(x, y, random.uniform2());
+        return tracer.trace(pinhole.eye, settings.pixelCentre ? centre : within, within, random);
+    }
+
     /// False: cancelled, the pixel is unfinished.
     bool render(uint32_t x, uint32_t y, Pace& pace)
     {
@@ -176,9 +184,7 @@ struct Frame
         for (uint32_t i = 0; i < settings.samples; ++i)
         {
             if (i > 0 && i % Pace::kStep == 0 && !pace.goOn(Pace::kStep)) return false;
-            Random random = randomOf(pixel, i);
-            const vec3 within = through(x, y, random.uniform2());
-            const PathLight path = tracer.trace(pinhole.eye, settings.pixelCentre ? centre : within, within, random);
+            const PathLight path = trace(x, y, i, centre);
             // One such path would spoil its pixel whatever the other paths say; it counts as black, and is reported.
             if (!allFinite(path))
             {
@@ -286,6 +292,42 @@ Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings&
     result.images = std::move(frame.images);
     result.nonFinitePaths = frame.nonFinite.load();
     return result;
+}
+
+vec3 directionThrough(const Camera& camera, uint32_t width, uint32_t height, vec2 pixel)
+{
+    return Pinhole(camera, width, height).direction(pixel.x, pixel.y, width, height);
+}
+
+Result<PixelLight> pixelReference(const RayScene& rays, ReferenceSettings settings, glm::uvec2 pixel)
+{
+    settings.guides = settings.parts = false;
+    if (Status fine = check(settings); !fine) return fine.error();
+    if (pixel.x >= settings.width || pixel.y >= settings.height)
+        return Error{ErrorCode::badArgument, fmt::format("Pixel {},{} is outside of the picture of {} x {}; the first is 0,0", pixel.x,
+                                                         pixel.y, settings.width, settings.height)};
+    const PathTracer tracer(rays, settings.roughness, settings.bounces);
+    const Frame frame(settings, rays, tracer);
+    const vec3 centre = frame.through(pixel.x, pixel.y, vec2(0.5f));
+    glm::dvec3 sums[3]{}, squares[3]{}; // of direct, diffuse, glossy
+    for (uint32_t i = 0; i < settings.samples; ++i)
+    {
+        const PathLight path = frame.trace(pixel.x, pixel.y, i, centre);
+        if (!allFinite(path)) continue; // black, as in the picture
+        const vec3 parts[] = {path.direct, path.diffuse, path.glossy};
+        for (size_t part = 0; part < 3; ++part)
+        {
+            sums[part] += parts[part];
+            squares[part] += glm::dvec3(parts[part]) * glm::dvec3(parts[part]);
+        }
+    }
+    const double count = settings.samples;
+    const auto unsure = [&](size_t part) // standard error of the mean
+    {
+        const glm::dvec3 variance = squares[part] / count - sums[part] / count * (sums[part] / count);
+        return vec3(glm::sqrt(glm::max(variance, glm::dvec3(0.0)) / std::max(count - 1.0, 1.0)));
+    };
+    return PixelLight{vec3(sums[0] / count), vec3(sums[1] / count), vec3(sums[2] / count), unsure(1), unsure(2)};
 }
 
 } // namespace sconce

@@ -49,6 +49,20 @@ struct Reference
 Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress = {});
 /// The same without building the scene's hierarchy anew; the scene must be a valid one.
 Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress = {});
+/// Unit direction from a camera's eye through a point of its picture, pixels from the top left corner.
+vec3 directionThrough(const Camera& camera, uint32_t width, uint32_t height, vec2 pixel);
+
+/// The light of one pixel.
+struct PixelLight
+{
+    vec3 direct{0.0f}, diffuse{0.0f}, glossy{0.0f}; // as the layers of Reference::images
+    vec3 unsureDiffuse{0.0f}, unsureGlossy{0.0f};   // standard errors of these means
+};
+/// What the picture with these settings has at a pixel, to the bit, without the rest of it.
+/// @param settings  but for guides and parts, which it has none of
+/// Errors: badArgument (also a pixel outside of the picture).
+Result<PixelLight> pixelReference(const RayScene& rays, ReferenceSettings settings, glm::uvec2 pixel);
+
 /// What one picture of all paths would be, but for rounding. Of two with the same settings but for `samples` and `firstPath`, both
 /// multiples of 4 where they have parts.
 /// @param pathsA, pathsB  a pixel

@@ -68,6 +68,7 @@ struct FieldData
     uint32_t bounces = 0;
     std::string sceneName;
     std::vector<std::string> effects; // names of the effects the scene calls for
+    std::vector<std::string> why;     // of each probe, why it stands where it does, in words of who placed it; empty: nobody said
     uint32_t fileVersion = 0;         // of the format of the file it was read from; 0: it was not read from one
 };
 

@@ -348,6 +348,8 @@ std::string contentProblem(const FieldData& field)
         if (!finite(field.probes[p].centre)) return fmt::format("the centre of probe {} is not finite", p);
     if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
         return "its scene bounds are not finite";
+    if (!field.why.empty() && field.why.size() != field.info.probeCount)
+        return fmt::format("it says why {} probes are where they are, and has {}", field.why.size(), field.info.probeCount);
     if (std::string problem = lampProblem(field); !problem.empty()) return problem;
     if (std::string problem = groupProblem(field); !problem.empty()) return problem;
     if (std::string problem = liveProblem(field); !problem.empty()) return problem;
@@ -402,6 +404,7 @@ std::string metaText(const FieldData& field)
     json["bounces"] = field.bounces;
     json["effects"] = field.effects;
     json["probes"] = field.info.probeCount;
+    if (!field.why.empty()) json["why"] = field.why;
     const auto numbers = [](vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
     for (const LightGroup& group : field.groups)
     {
@@ -504,13 +507,16 @@ bool applyMeta(std::string_view text, FieldData& field)
     };
     if (!number("resolution", field.resolution) || !number("bounces", field.bounces)) return false;
     const auto scene = json.find("scene"), effects = json.find("effects");
-    if (scene == json.end() || !scene->is_string() || effects == json.end() || !effects->is_array()) return false;
+    if (scene == json.end() || !scene->is_string() || effects == json.end()) return false;
     field.sceneName = scene->get<std::string>();
-    for (const nlohmann::json& effect : *effects)
+    const auto texts = [](const nlohmann::json& list, std::vector<std::string>& to)
     {
-        if (!effect.is_string()) return false;
-        field.effects.push_back(effect.get<std::string>());
-    }
+        if (!list.is_array() || !std::ranges::all_of(list, [](const nlohmann::json& text) { return text.is_string(); })) return false;
+        to = list.get<std::vector<std::string>>();
+        return true;
+    };
+    if (!texts(*effects, field.effects)) return false;
+    if (const auto why = json.find("why"); why != json.end() && !texts(*why, field.why)) return false;
     return (!json.contains("groups") || applyGroups(json["groups"], field.groups)) &&
            (!json.contains("live") || applyLive(json["live"], field.live));
 }

@@ -7,37 +7,16 @@
 
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
-#include "tests/support/field_by_rays.h"
+#include "tests/support/lit_field.h"
 
 namespace sconce
 {
 namespace
 {
 
+using testing_support::litField;
 using Text = twin::LightFieldTwin<float>;
-constexpr uint32_t kSize = 24; // texels of surface light a side
-
-/// A field by rays with the light that `lightAt` says at every texel's point, world metres.
-template <class Light> FieldData litField(const Scene& scene, const std::vector<vec3>& probes, Light lightAt)
-{
-    const RayScene rays = std::move(*RayScene::create(scene));
-    FieldData field = testing_support::fieldByRays(rays, probes, 96);
-    field.info.surfaceSize = kSize;
-    field.info.cellShift = cellShiftOf(field.info);
-    field.surfaceLight.resize(size_t(6) * kSize * kSize * probes.size() + cellWords(field.info));
-    field.irradiance.assign(probes.size() * kIrradianceWordsPerProbe, 0u);
-    Text text(field, testing_support::defaultQuality());
-    for (uint32_t probe = 0; probe < probes.size(); ++probe)
-        for (int face = 0; face < 6; ++face)
-            for (int y = 0; y < int(kSize); ++y)
-                for (int x = 0; x < int(kSize); ++x)
-                {
-                    const auto point = text.surfacePointAt(probe, face, x, y);
-                    const vec3 world = field.info.origin + field.info.scale * (vec3(field.probes[probe].centre) + point.at);
-                    field.surfaceLight[text.surfaceIndex(probe, face, x, y)] = text.packSharedExponent(vec3(lightAt(world)));
-                }
-    return field;
-}
+constexpr uint32_t kSize = testing_support::kLitTexels;
 
 auto lightOf(const FieldData& field, vec3 point, vec3 normal)
 {

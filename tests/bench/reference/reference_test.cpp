@@ -342,5 +342,56 @@ TEST(Reference, PartsMakeTheWhole)
     EXPECT_NE(refused.error().message.find("parts"), std::string::npos) << refused.error().message;
 }
 
+TEST(Reference, APixelAloneIsThePicturesPixel)
+{
+    const Scene scene = smallRoom();
+    ReferenceSettings settings = view({0, 0, 0.9f}, vec3(0.0f), 24, 64, 1.2f);
+    settings.parts = true;
+    const auto picture = renderReference(scene, settings);
+    ASSERT_TRUE(picture) << picture.error().message;
+    const auto rays = RayScene::create(scene);
+    ASSERT_TRUE(rays);
+    for (const glm::uvec2 at : {glm::uvec2(0, 0), glm::uvec2(7, 11), glm::uvec2(23, 23)})
+    {
+        const auto alone = pixelReference(*rays, settings, at);
+        ASSERT_TRUE(alone) << alone.error().message;
+        const auto of = [&](const char* layer, uint32_t c) { return picture->images.find(layer)->pixels[3 * (24 * at.y + at.x) + c]; };
+        for (uint32_t c = 0; c < 3; ++c)
+        {
+            EXPECT_EQ(alone->direct[int(c)], of("direct", c));
+            EXPECT_EQ(alone->diffuse[int(c)], of("diffuse_indirect", c));
+            EXPECT_EQ(alone->glossy[int(c)], of("glossy_indirect", c));
+        }
+    }
+    const auto outside = pixelReference(*rays, settings, {24, 0});
+    ASSERT_FALSE(outside);
+    EXPECT_NE(outside.error().message.find("24,0"), std::string::npos) << outside.error().message;
+}
+
+/// The standard errors of pixels, against how far they are from a picture of many more paths.
+TEST(Reference, APixelKnowsHowUnsureItIs)
+{
+    const Scene scene = smallRoom();
+    ReferenceSettings settings = view({0, 0, 0.9f}, vec3(0.0f), 24, 2048, 1.2f);
+    const auto truth = renderReference(scene, settings);
+    ASSERT_TRUE(truth) << truth.error().message;
+    const auto rays = RayScene::create(scene);
+    ASSERT_TRUE(rays);
+    settings.samples = 128;
+    settings.seed = 9;
+    int within = 0, withinThrice = 0;
+    for (uint32_t i = 0; i < 24 * 24; ++i)
+    {
+        const auto pixel = pixelReference(*rays, settings, {i % 24, i / 24});
+        ASSERT_TRUE(pixel) << pixel.error().message;
+        const float off = std::abs(pixel->diffuse.g - truth->images.find("diffuse_indirect")->pixels[3 * i + 1]);
+        within += off <= pixel->unsureDiffuse.g ? 1 : 0;
+        withinThrice += off <= 3.0f * pixel->unsureDiffuse.g ? 1 : 0;
+    }
+    // 0.683 and 0.997 of a normal distribution; rare bright paths, which some pixels have missed, take from both.
+    EXPECT_NEAR(within / 576.0, 0.64, 0.08);
+    EXPECT_GT(withinThrice / 576.0, 0.9);
+}
+
 } // namespace
 } // namespace sconce

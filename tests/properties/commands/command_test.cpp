@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/reference/image_io.h"
 #include "tests/support/run_command.h"
 
 using namespace sconce::testing_support;
@@ -380,6 +381,56 @@ TEST(Command, PipelineFromSceneToHits)
     expectSentence(sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits2.csv", "-q"}), 3,
                    "header");
     EXPECT_FALSE(std::filesystem::exists(folder / "hits2.csv"));
+}
+
+// One probe in a closed room: what it sees, and a pixel whose light and ray are its alone.
+TEST(Command, ProbesAndPixelsAreExplained)
+{
+    const TestFolder folder;
+    writeText(folder / "p.json",
+              R"({"probes": [{"position": [0, 1, 0.2], "why": "by hand"}, {"position": [0, 1.2, 0.6], "why": "more"}]})");
+    ASSERT_EQ(sconceCommand({"bake", "cornell-glossy", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "128",
+                             "--surface-rays", "16", "-q"})
+                  .exit,
+              0);
+    const json probe = jsonOf(sconceCommand({"probe", folder / "f.sconce", "1", "-o", folder / "pano.exr", "--width", "128", "--json"}));
+    EXPECT_EQ(probe.at("why"), "more");
+    EXPECT_NEAR(probe.at("position")[1].get<double>(), 1.2, 1e-3);
+    EXPECT_GT(probe.at("square_metres").get<double>(), probe.at("square_metres_alone").get<double>());
+    EXPECT_GT(probe.at("sky").get<double>(), 0.05) << "the box is open to the front";
+    const auto panorama = sconce::readExr(folder / "pano.exr");
+    ASSERT_TRUE(panorama) << panorama.error().message;
+    for (const char* layer : {"beauty", "depth", "normal", "alone"}) EXPECT_NE(panorama->find(layer), nullptr) << layer;
+    EXPECT_EQ(panorama->height, 64u);
+    EXPECT_EQ(sconceCommand({"probe", folder / "f.sconce", "1", "-o", folder / "pano.png", "--width", "64", "-q"}).exit, 0);
+    expectSentence(sconceCommand({"probe", folder / "f.sconce", "2", "-o", folder / "x.png"}), 2, "no probe 2");
+    expectSentence(sconceCommand({"probe", folder / "f.sconce", "1", "-o", folder / "x.jpg"}), 2, "x.jpg");
+
+    const std::vector<std::string> camera = {"--size", "64x36", "--eye", "0,1,0.9", "--target", "0,0.9,-1"};
+    const auto with = [&](std::vector<std::string> line)
+    {
+        line.insert(line.end(), camera.begin(), camera.end());
+        return sconceCommand(line);
+    };
+    ASSERT_EQ(with({"render", "cornell-glossy", "--field", folder / "f.sconce", "-o", folder / "r.exr", "-q"}).exit, 0);
+    const auto picture = sconce::readExr(folder / "r.exr");
+    ASSERT_TRUE(picture) << picture.error().message;
+    const json pixel = jsonOf(with(
+        {"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "40,6", "--spp", "64", "--picture", folder / "way.png", "--json"}));
+    for (const size_t c : {0, 1, 2})
+    {
+        EXPECT_EQ(pixel.at("diffuse").at("frame")[c].get<float>(), picture->find("diffuse_indirect")->pixels[3 * (6 * 64 + 40) + c]);
+        EXPECT_EQ(pixel.at("glossy").at("frame")[c].get<float>(), picture->find("glossy_indirect")->pixels[3 * (6 * 64 + 40) + c]);
+    }
+    EXPECT_FALSE(pixel.at("diffuse").at("asked").empty());
+    EXPECT_FALSE(pixel.at("glossy").at("way").empty());
+    EXPECT_FALSE(pixel.at("advice").empty());
+    EXPECT_GT(std::filesystem::file_size(folder / "way.png"), 100u);
+    expectSentence(with({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "64,0"}), 2, "63,35");
+    expectSentence(with({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "1.5,0"}), 2, "1.5");
+    expectSentence(sconceCommand({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "1,1", "--size", "8x8", "--eye", "0,1,3",
+                                  "--target", "0,1,9"}),
+                   2, "sky");
 }
 
 // The frame as a user gets it; what `auto` leaves out must not change a bit of it.

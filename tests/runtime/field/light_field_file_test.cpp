@@ -201,6 +201,20 @@ TEST_F(LightFieldFile, RoundTripGivesBackEveryField)
         }
 }
 
+TEST_F(LightFieldFile, WhyProbesStandWhereTheyDoIsKept)
+{
+    FieldData field = smallField(gpu::kChartCube, 16, 3);
+    ASSERT_TRUE(saveField(field, file));
+    EXPECT_TRUE(loadField(file)->why.empty()) << "nobody said";
+    field.why = {"by hand", "", "free point, \"covers\" 2 % of the surface first"};
+    ASSERT_TRUE(saveField(field, file));
+    EXPECT_EQ(loadField(file)->why, field.why);
+    field.why.pop_back();
+    const Status short_ = saveField(field, file);
+    ASSERT_FALSE(short_);
+    EXPECT_NE(short_.error().message.find("why 2 probes"), std::string::npos) << short_.error().message;
+}
+
 TEST_F(LightFieldFile, WhatNoSurfaceCallsForMayBeLeftOut)
 {
     for (const bool radiance : {false, true})
