@@ -1,7 +1,9 @@
 #include "bench/sweep/keys.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -9,6 +11,8 @@
 #include <xxhash.h>
 
 #include <fmt/format.h>
+
+#include "base/commit_mark.h"
 
 namespace sconce
 {
@@ -83,7 +87,17 @@ Result<std::string> keyOfFile(const std::filesystem::path& file)
 
 Result<std::string> keyOfThisBuild()
 {
-    return keyOfFile("/proc/self/exe");
+    std::ifstream stream("/proc/self/exe", std::ios::binary);
+    std::string program((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    if (program.empty()) return Error{ErrorCode::fileError, "Cannot read this program at '/proc/self/exe'; check that /proc is there."};
+    return hex(keyWithoutCommit(std::move(program)));
+}
+
+uint64_t keyWithoutCommit(std::string program)
+{
+    for (size_t at = program.find(kCommitMark); at != std::string::npos; at = program.find(kCommitMark, at + 1))
+        program.replace(at + kCommitMark.size(), std::min(kCommitLength, program.size() - at - kCommitMark.size()), kCommitLength, ' ');
+    return XXH3_64bits(program.data(), program.size());
 }
 
 std::string keyOf(const Scene& scene)
