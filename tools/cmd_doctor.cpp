@@ -4,6 +4,7 @@
 
 #include "runtime/vulkan/host_vulkan.h"
 #include "tools/common.h"
+#include "tools/version.h"
 
 namespace sconce::tools
 {
@@ -34,10 +35,10 @@ int runDoctor(const NoOptions&, const Context& context)
                         {"missing", device.missing},
                         {"usable", device.missing.empty()}});
     if (context.json)
-        print({{"version", SCONCE_VERSION}, {"devices", list}});
+        print({{"version", versionText()}, {"devices", list}});
     else
     {
-        std::cout << "sconce " << SCONCE_VERSION << "\n";
+        std::cout << "sconce " << versionText() << "\n";
         for (size_t i = 0; i < devices->size(); ++i)
         {
             const DeviceSummary& device = (*devices)[i];

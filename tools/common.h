@@ -138,6 +138,7 @@ void addReferenceCommands(CLI::App& app, Context& context);
 void addRelightCommand(CLI::App& app, Context& context);
 void addBenchCommand(CLI::App& app, Context& context);
 void addTuneCommand(CLI::App& app, Context& context);
+void addManualCommand(CLI::App& app, Context& context);
 void addProbeCommand(CLI::App& app, Context& context);
 void addExplainCommand(CLI::App& app, Context& context);
 void addDoctorCommand(CLI::App& app, Context& context);

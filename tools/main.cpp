@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tools/common.h"
+#include "tools/version.h"
 
 int main(int argc, char** argv)
 {
@@ -13,7 +14,7 @@ int main(int argc, char** argv)
                  "stdout is data, stderr is progress and notes.\n"
                  "Exit codes: 0 ok, 1 a threshold was missed, 2 usage, 3 input, 4 device or memory, 5 file, 130 interrupted.",
                  "sconce");
-    app.set_version_flag("--version", SCONCE_VERSION);
+    app.set_version_flag("--version", versionText());
     app.require_subcommand(1);
     Context context;
     context.commandLine = spelledForShell(argc, argv);
@@ -30,6 +31,7 @@ int main(int argc, char** argv)
     addBenchCommand(app, context);
     addTuneCommand(app, context);
     addKnobsCommand(app, context);
+    addManualCommand(app, context);
     addDoctorCommand(app, context);
     try
     {

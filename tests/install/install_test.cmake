@@ -27,3 +27,30 @@ step("Configuration of the host" ${CMAKE_COMMAND} -S ${HOST} -B ${WORK}/build -G
      -DCMAKE_CXX_FLAGS=${FLAGS} -DKEEP_MODULES=${KEEP_MODULES})
 step("Build of the host" ${CMAKE_COMMAND} --build ${WORK}/build --config ${CONFIG})
 step("Run of the host" ${WORK}/build/host ${WORK}/cornell.sconce)
+
+# The same without CMake.
+find_program(PKG_CONFIG pkg-config REQUIRED)
+file(GLOB_RECURSE pc ${WORK}/prefix/*/sconce.pc)
+get_filename_component(pc ${pc} DIRECTORY)
+set(ENV{PKG_CONFIG_PATH} ${pc})
+execute_process(COMMAND ${PKG_CONFIG} --variable=shaders sconce OUTPUT_VARIABLE shaders OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+step("The host's shader by pkg-config" glslangValidator --quiet --target-env vulkan1.2 -I${shaders} --vn host_trace -o ${WORK}/host_trace.h ${HOST}/host_trace.comp)
+execute_process(COMMAND ${PKG_CONFIG} --cflags --libs sconce OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags} ${FLAGS}")
+file(GLOB sources ${HOST}/*.cpp)
+step("Build of the host by pkg-config" ${COMPILER} -std=c++20 -I${WORK} ${sources} ${flags} -o ${WORK}/host_by_pkg_config)
+step("Run of the host by pkg-config" ${WORK}/host_by_pkg_config ${WORK}/cornell.sconce)
+
+# What a shell and `man` read is there, and knows every command.
+file(READ ${WORK}/prefix/share/man/man1/sconce.1 page)
+file(READ ${WORK}/prefix/share/bash-completion/completions/sconce bash)
+foreach(command place bake render explain)
+    if(NOT page MATCHES "sconce ${command}" OR NOT bash MATCHES "[\" ]${command}[\" ]")
+        message(FATAL_ERROR "The manual page or the completion does not know `sconce ${command}`")
+    endif()
+endforeach()
+execute_process(COMMAND bash -c "source ${WORK}/prefix/share/bash-completion/completions/sconce; COMP_WORDS=(sconce place --me); COMP_CWORD=2; _sconce;
+    echo \${COMPREPLY[*]}; COMP_WORDS=(sconce place --method s); COMP_CWORD=3; _sconce; echo \${COMPREPLY[*]}" OUTPUT_VARIABLE offered OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(NOT offered STREQUAL "--method --memory\nsdf")
+    message(FATAL_ERROR "Completion offers '${offered}' where it should offer --method --memory, then sdf")
+endif()

@@ -1,9 +1,11 @@
 #include "bench/sweep/keys.h"
 
+#include <cstdio>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "base/commit_mark.h"
 #include "bench/sweep/settings.h"
 #include "scene/builtin_scenes.h"
 #include "tests/support/files.h"
@@ -46,12 +48,22 @@ TEST(Keys, AnyByteOfAFileCounts)
     EXPECT_EQ(missing.error().code, ErrorCode::fileError);
 }
 
-// The program that runs this test is such a build: its key is that of its file.
-TEST(Keys, TheKeyOfABuildIsThatOfItsProgram)
+// The program that runs this test is such a build: its key is that of its file but for the commit.
+TEST(Keys, TheKeyOfABuildIsThatOfItsProgramWithoutItsCommit)
 {
     const auto build = keyOfThisBuild();
     ASSERT_TRUE(build) << build.error().message;
-    EXPECT_EQ(*build, *keyOfFile(std::filesystem::read_symlink("/proc/self/exe")));
+    const std::string program = testing_support::readText(std::filesystem::read_symlink("/proc/self/exe"));
+    char key[17];
+    std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(keyWithoutCommit(program)));
+    EXPECT_EQ(*build, key);
+
+    const std::string mark(kCommitMark), rest(1000, 'x');
+    const uint64_t one = keyWithoutCommit(rest + mark + "0123456789ab    " + rest);
+    EXPECT_EQ(keyWithoutCommit(rest + mark + "ba9876543210+   " + rest), one) << "another commit";
+    EXPECT_NE(keyWithoutCommit(rest + mark + "0123456789ab    y" + rest.substr(1)), one) << "another program";
+    EXPECT_NE(keyWithoutCommit(rest.substr(1) + "y" + mark + "0123456789ab    " + rest), one);
+    EXPECT_NO_FATAL_FAILURE(keyWithoutCommit(mark + "01")) << "cut off behind the mark";
 }
 
 TEST(Keys, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)

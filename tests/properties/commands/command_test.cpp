@@ -1,6 +1,7 @@
 // The command as its users meet it: exit codes, sentences, help, JSON, files.
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -79,7 +80,8 @@ TEST(Command, HelpOfEveryOptionStatesItsDefault)
         }
         check();
     }
-    EXPECT_NE(sconceCommand({"--version"}).out.find('.'), std::string::npos);
+    const std::string version = sconceCommand({"--version"}).out; // with its commit, or that it has none
+    EXPECT_TRUE(std::regex_match(version, std::regex(R"(\d+\.\d+\.\d+ \(([0-9a-f]{12,14}\+?|unknown)\)\n)"))) << version;
 }
 
 /// What --help says of "COMMAND --OPTION", in one line; empty: there is no such option.
