@@ -6,16 +6,20 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "bench/reference/path_tracer.h"
 #include "bench/reference/reference.h"
 #include "runtime/field/explain.h"
 #include "runtime/field/light_field_file.h"
+#include "runtime/field/light_groups.h"
+#include "runtime/field/live_light.h"
 #include "runtime/field/tracer_cpu.h"
 #include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "shaders/shared/frame.h"
 #include "tools/field_report.h"
+#include "tools/live_light_options.h"
 #include "tools/pictures.h"
 #include "tools/ray_picture.h"
 
@@ -58,14 +62,10 @@ struct Explained
     ExplainedRay way;
     float truthT = std::numeric_limits<float>::infinity(); // of that ray
     vec3 truthNormal{0.0f};
+    std::string met;          // what it truly meets, a few words
     vec3 arriving{0.0f};      // radiance along that ray, by paths
     float metresRight = 0.0f; // by how much a ray's end may be off
 };
-
-float luminance(vec3 v)
-{
-    return glm::dot(v, vec3(0.2126f, 0.7152f, 0.0722f));
-}
 
 Result<glm::uvec2> pixelOf(const ExplainOptions& options)
 {
@@ -135,7 +135,10 @@ void explainReflection(const RayScene& rays, const PathTracer& paths, const Fiel
     if (const auto met = rays.closest(e.ray.origin, direction))
     {
         e.truthT = std::max(met->t, 0.0f);
-        e.truthNormal = glm::dot(met->geometricNormal, direction) > 0.0f ? -met->geometricNormal : met->geometricNormal;
+        const ShadingPoint surface = paths.shade(*met, -direction);
+        e.truthNormal = surface.geometricNormal;
+        e.met = fmt::format("material '{}', metallic {:.2f}, roughness {:.2f}", rays.scene().materials[met->material].name,
+                            surface.surface.metallic, surface.surface.roughness);
     }
     glm::dvec3 sum(0.0);
     for (uint32_t i = 0; i < count; ++i)
@@ -228,9 +231,9 @@ void adviseGlossy(const FieldData& data, const Explained& e, std::vector<std::st
     const float off = luminance(glm::abs(e.way.hit.radiance - e.arriving));
     if (off > kLight * luminance(e.arriving))
         advice.push_back(
-            fmt::format("The axis' ray ends where it should; light there is {:.3g} where paths find {:.3g}: the surface that it meets is "
-                        "glossy or in motion, or its diffuse light is off there: explain that place.",
-                        luminance(e.way.hit.radiance), luminance(e.arriving)));
+            fmt::format("The axis' ray ends where it should; light there is {:.3g} where paths find {:.3g}. It meets {}: to a ray "
+                        "every surface is as bright to all sides, which smooth ones are not; of a rough one the diffuse light is off.",
+                        luminance(e.way.hit.radiance), luminance(e.arriving), e.met.empty() ? std::string("the sky") : e.met));
     else
         advice.push_back(
             "The axis' ray is right, place and light: what is left is the noise of rays about it, and the filter; `render --samples`.");
@@ -315,6 +318,17 @@ void printGlossy(const Explained& e, bool picture)
                              luminance(e.arriving), rayIsRight(e) ? "right" : "wrong");
 }
 
+/// Why a field's own light is not that of the scene, which paths see; empty where nothing says so.
+std::string otherLight(const ExplainOptions& options, const FieldData& data, Scene scene)
+{
+    if (data.live.links == 0) return {};
+    const auto lights = takeLiveLights(scene, groupsOf(data.groups));
+    if (!lights) return lights.error().message;
+    if (data.live.lit && std::ranges::equal(*lights, data.live.lights, sameLight)) return {};
+    return fmt::format("Light field '{}' is {}; give `sconce relight --keep` the same lights, and explain what that writes.", options.field,
+                       data.live.lit ? "lit by other lights than the scene" : "captured, not lit");
+}
+
 int runExplain(const ExplainOptions& options, const Context& context)
 {
     Explained e;
@@ -328,6 +342,7 @@ int runExplain(const ExplainOptions& options, const Context& context)
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
     if (std::string fault = validate(*scene); !fault.empty()) return fail(ErrorCode::badInput, fault);
+    if (std::string fault = otherLight(options, *data, *scene); !fault.empty()) return fail(ErrorCode::badArgument, fault);
     const Result<RayScene> rays = RayScene::create(*scene);
     if (!rays) return fail(rays.error());
     e.direction = directionThrough(*camera, options.width, options.height, vec2(e.pixel) + 0.5f);

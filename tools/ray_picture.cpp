@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "scene/section.h"
+
 namespace sconce::tools
 {
 namespace
@@ -69,22 +71,6 @@ Canvas canvasOf(const gpu::Ray& ray, std::span<const vec3> shown)
     return canvas;
 }
 
-void drawCut(const Scene& scene, Canvas& canvas)
-{
-    for (const uvec3& triangle : scene.triangles)
-    {
-        vec2 ends[2];
-        int found = 0;
-        for (int i = 0; i < 3 && found < 2; ++i)
-        {
-            const vec3 a = scene.positions[triangle[i]], b = scene.positions[triangle[(i + 1) % 3]];
-            const float da = glm::dot(a - canvas.origin, canvas.across), db = glm::dot(b - canvas.origin, canvas.across);
-            if ((da < 0.0f) != (db < 0.0f)) ends[found++] = canvas.inPlane(glm::mix(a, b, da / (da - db)));
-        }
-        if (found == 2) canvas.line(ends[0], ends[1], 0.5f, kCut);
-    }
-}
-
 } // namespace
 
 Picture drawWay(const Scene& scene, const FieldData& field, const gpu::Ray& ray, const ExplainedRay& way, float truth)
@@ -99,7 +85,7 @@ Picture drawWay(const Scene& scene, const FieldData& field, const gpu::Ray& ray,
     if (std::isfinite(truth)) shown.push_back(ray.origin + truth * ray.direction);
     Canvas canvas = canvasOf(ray, shown);
     for (size_t i = 0; i < canvas.picture.rgb.size(); ++i) canvas.picture.rgb[i] = kGround.x;
-    drawCut(scene, canvas);
+    for (const auto& [a, b] : sectionOf(scene, canvas.origin, canvas.across)) canvas.line(canvas.inPlane(a), canvas.inPlane(b), 0.5f, kCut);
     const auto at = [&](float t) { return canvas.inPlane(ray.origin + t * ray.direction); };
     std::vector<uint32_t> drawn;
     for (size_t i = 0; i < way.way.size(); ++i)

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/section.h"
+
 namespace sconce
 {
 namespace
@@ -71,20 +73,7 @@ Json wrongness(const Json& point, std::span<const float> reference)
 Json sectionAt(const Scene& scene, float height)
 {
     std::vector<glm::vec4> segments;
-    for (const uvec3& triangle : scene.triangles)
-    {
-        vec2 ends[2];
-        int found = 0;
-        for (int i = 0; i < 3 && found < 2; ++i)
-        {
-            const vec3 a = scene.positions[triangle[i]], b = scene.positions[triangle[(i + 1) % 3]];
-            // Half open, so that a corner exactly at the height cuts two of the edges or none, and never one.
-            if ((a.y < height) == (b.y < height)) continue;
-            const float s = (height - a.y) / (b.y - a.y);
-            ends[found++] = vec2(glm::mix(a.x, b.x, s), glm::mix(a.z, b.z, s));
-        }
-        if (found == 2) segments.emplace_back(ends[0], ends[1]);
-    }
+    for (const auto& [a, b] : sectionOf(scene, vec3(0.0f, height, 0.0f), vec3(0.0f, 1.0f, 0.0f))) segments.emplace_back(a.x, a.z, b.x, b.z);
     const auto length = [](const glm::vec4& s) { return glm::distance(vec2(s), vec2(s.z, s.w)); };
     // The longest stay: a page must be able to draw the plan, and walls are what it is looked at for.
     if (segments.size() > kMostSegments)

@@ -582,6 +582,16 @@ TEST(Command, LightsMoveAfterTheBake)
         sconceCommand({"capture", "cornell-glossy", "--probes", folder / "p.json", "--live-links", "0", "-o", folder / "x.sconce"}), 2,
         "live links");
 
+    // A pixel is not explained by light that its field doesn't have.
+    const auto explained = [&](const char* field, const std::string& by) {
+        return sconceCommand(
+            {"explain", folder / field, "cornell-glossy", "--lights", by, "--size", "16x9", "--pixel", "8,4", "--spp", "4"});
+    };
+    expectSentence(explained("dark.sconce", one), 2, "captured, not lit");
+    expectSentence(explained("f.sconce", other), 2, "other lights than the scene");
+    const CommandResult same = explained("f.sconce", one);
+    EXPECT_EQ(same.exit, 0) << same.err;
+
     // In the file and in the frame it is the same light, and another one than before.
     const json relit = jsonOf(sconceCommand({"relight", folder / "f.sconce", "-o", folder / "other.sconce", "--lights", other, "--json"}));
     EXPECT_EQ(relit["format_version"], 6) << "a static field has nothing of it";
