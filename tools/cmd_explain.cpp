@@ -17,6 +17,7 @@
 #include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
+#include "scene/view_rays.h"
 #include "shaders/shared/frame.h"
 #include "tools/field_report.h"
 #include "tools/live_light_options.h"
@@ -345,7 +346,8 @@ int runExplain(const ExplainOptions& options, const Context& context)
     if (std::string fault = otherLight(options, *data, *scene); !fault.empty()) return fail(ErrorCode::badArgument, fault);
     const Result<RayScene> rays = RayScene::create(*scene);
     if (!rays) return fail(rays.error());
-    e.direction = directionThrough(*camera, options.width, options.height, vec2(e.pixel) + 0.5f);
+    e.direction = Pinhole(*camera, options.width, options.height)
+                      .direction(float(e.pixel.x) + 0.5f, float(e.pixel.y) + 0.5f, options.width, options.height);
     const std::optional<SurfaceHit> hit = rays->closest(camera->eye, e.direction);
     if (!hit)
         return fail(ErrorCode::badArgument,

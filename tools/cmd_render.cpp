@@ -16,6 +16,7 @@
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
+#include "tools/from_field.h"
 #include "tools/light_group_options.h"
 #include "tools/live_light_options.h"
 #include "tools/pictures.h"
@@ -44,6 +45,9 @@ struct RenderOptions
     QualityOption quality;
     std::vector<std::string> groups, dims;
     std::string sunPath;
+    bool fromField = false;
+    float stereo = 0.0f;     // metres between the eyes; 0: one
+    std::vector<float> lens; // k1, k2
     uint32_t width = knobs::width.value, height = knobs::height.value, samples = knobs::glossyRays.value, frames = knobs::drawnFrames.value,
              seed = knobs::frameSeed.value;
     std::optional<float> roughness;
@@ -337,6 +341,51 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
     return exitOk;
 }
 
+/// A picture that no geometry is drawn for.
+int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::string& device, const LightField& field, const Camera& camera,
+                        uint32_t samples, const Context& context)
+{
+    const Stopwatch watch;
+    View view{.width = options.width, .height = options.height, .samples = samples, .eyesApart = options.stereo};
+    if (!options.lens.empty()) view.lens = {options.lens[0], options.lens[1]};
+    const Result<ViewRays> rays = ViewRays::create(camera, view);
+    if (!rays) return fail(rays.error());
+    const std::optional<Baseline> baseline = baselineNamed(options.tracer);
+    const Result<RayTracer> tracer = makeRayTracer(gpu, field, baseline ? traceRaysPass(*baseline) : Spirv{});
+    if (!tracer) return fail(tracer.error());
+    FieldPicture drawn;
+    std::vector<double> milliseconds;
+    for (uint32_t i = 0; i < options.frames; ++i)
+    {
+        Result<FieldPicture> one = drawFromField(*tracer, camera, view, *rays, consoleProgress(context));
+        if (!one) return fail(one.error());
+        drawn = std::move(*one);
+        milliseconds.push_back(drawn.milliseconds);
+    }
+    Json json = {{"device", device},
+                 {"tracer", options.tracer},
+                 {"from_field", true},
+                 {"samples", samples},
+                 {"stereo", options.stereo},
+                 {"lens", {view.lens.x, view.lens.y}},
+                 {"frames", options.frames},
+                 {"dim", options.dims},
+                 {"frame_ms", median(milliseconds)},
+                 {"rays", drawn.rays},
+                 {"unknown_share", double(drawn.unknown) / double(drawn.rays)},
+                 {"fetches_per_ray", drawn.fetchesPerRay},
+                 {"handoffs_per_ray", drawn.handoffsPerRay}};
+    if (Status status = options.pictures.write(std::move(drawn.images), json); !status) return fail(status.error());
+    addCost(json, watch);
+    if (context.json)
+        print(json);
+    else
+        std::cout << fmt::format("{}: {}x{} from the field alone on {}, {} rays in {:f} ms, {:.3f} % that no probe could answer\n",
+                                 options.pictures.output, rays->width(), rays->height(), device, drawn.rays, median(milliseconds),
+                                 100.0 * double(drawn.unknown) / double(drawn.rays));
+    return exitOk;
+}
+
 int runRender(RenderOptions options, const Context& context)
 {
     const Stopwatch watch;
@@ -344,7 +393,8 @@ int runRender(RenderOptions options, const Context& context)
     Quality tracer;
     if (const Status taken = takeQuality(options, settings, tracer); !taken) return fail(taken.error());
     // Before the scene is loaded: a misspelt layer should cost no waiting.
-    if (const std::string problem = options.pictures.problem(kFrameLayers); !problem.empty()) return fail(ErrorCode::badArgument, problem);
+    if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : kFrameLayers); !problem.empty())
+        return fail(ErrorCode::badArgument, problem);
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
     if (!groups) return fail(groups.error());
     Result<Scene> scene = options.scene.load(context);
@@ -416,6 +466,14 @@ int runRender(RenderOptions options, const Context& context)
         const Result<double> dimmed = dimField(**gpu, *field, *data, lighting->weights);
         if (!dimmed) return fail(dimmed.error());
         groupsMs = *dimmed;
+    }
+    if (options.fromField)
+    {
+        if (data->radiance.empty())
+            note(context,
+                 "Note: the light field was baked without the effects glossy and mirror; what is seen is as blurred as its prefiltered "
+                 "radiance. Bake it with --effects all.");
+        return drawWithoutGeometry(options, **gpu, device->name(), *field, *camera, settings.glossyRays, context);
     }
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,
@@ -517,9 +575,31 @@ void addRenderCommand(CLI::App& app, Context& context)
                                "time,x,y,z or time,x,y,z,r,g,b after a header of these names; see --sun",
                                words("none")))
         ->type_name("FILE");
+    CLI::Option* fromField = command->add_flag(
+        "--from-field", options->fromField,
+        described("Draws no geometry: rays from the eye meet what probes saw, --samples a pixel; SCENE gives camera and lights",
+                  words("off")));
+    command
+        ->add_option("--stereo", options->stereo,
+                     described("With --from-field: metres between two eyes, whose pictures stand beside each other", words("one eye")))
+        ->needs(fromField)
+        ->type_name("METRES");
+    command
+        ->add_option("--lens", options->lens,
+                     described("With --from-field: for a headset's lens, which shows what is r half heights from the middle at the tangent "
+                               "1 + K1 r^2 + K2 r^4 times as large",
+                               words("none")))
+        ->needs(fromField)
+        ->delimiter(',')
+        ->expected(2)
+        ->type_name("K1,K2");
     addDevice(command, options->device);
     options->pictures.add(command, kFrameLayers);
     options->quality.add(command);
+    // What only geometry's pixels have.
+    for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--no-denoise",
+                              "--temporal", "--roughness", "--sun-path"})
+        fromField->excludes(command->get_option(other));
     onChosen(command, context, options, runRender);
 }
 

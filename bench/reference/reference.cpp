@@ -13,30 +13,12 @@
 #include "base/numbers.h"
 #include "bench/reference/path_tracer.h"
 #include "scene/camera_check.h"
+#include "scene/view_rays.h"
 
 namespace sconce
 {
 namespace
 {
-
-struct Pinhole
-{
-    vec3 eye, forward, right, up; // right and up scaled to the half picture
-
-    Pinhole(const Camera& camera, uint32_t width, uint32_t height) : eye(camera.eye), forward(glm::normalize(camera.forward))
-    {
-        const float half = std::tan(0.5f * camera.verticalFov);
-        right = glm::normalize(glm::cross(forward, camera.up));
-        up = glm::cross(right, forward) * half;
-        right *= half * static_cast<float>(width) / static_cast<float>(height);
-    }
-    vec3 direction(float x, float y, uint32_t width, uint32_t height) const // pixels, from the top left corner
-    {
-        const float u = 2.0f * x / static_cast<float>(width) - 1.0f;
-        const float v = 1.0f - 2.0f * y / static_cast<float>(height);
-        return glm::normalize(forward + u * right + v * up);
-    }
-};
 
 bool allFinite(const PathLight& p)
 {
@@ -292,11 +274,6 @@ Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings&
     result.images = std::move(frame.images);
     result.nonFinitePaths = frame.nonFinite.load();
     return result;
-}
-
-vec3 directionThrough(const Camera& camera, uint32_t width, uint32_t height, vec2 pixel)
-{
-    return Pinhole(camera, width, height).direction(pixel.x, pixel.y, width, height);
 }
 
 Result<PixelLight> pixelReference(const RayScene& rays, ReferenceSettings settings, glm::uvec2 pixel)

@@ -49,8 +49,6 @@ struct Reference
 Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& settings, const Progress& progress = {});
 /// The same without building the scene's hierarchy anew; the scene must be a valid one.
 Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress = {});
-/// Unit direction from a camera's eye through a point of its picture, pixels from the top left corner.
-vec3 directionThrough(const Camera& camera, uint32_t width, uint32_t height, vec2 pixel);
 
 /// The light of one pixel.
 struct PixelLight
