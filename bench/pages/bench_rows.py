@@ -7,6 +7,7 @@
     bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
     bench/pages/response_table.sh                               bench/results/light_response.json
     bench/pages/bounces_table.sh                                bench/results/bounces.json
+    bench/pages/primary_table.sh                                bench/results/primary_rays.json
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -321,7 +322,38 @@ def bounces(arguments):
     keys = [key for key in next(iter(rows.values())) if key != "label"]
     rows["all"] = {"label": "least and most", "scenes": str(len(rows))} | {key: least_and_most([row[key] for row in rows.values()]) for key in keys}
     write("bounces.json", "The mean of a view's indirect light over the path tracer's, both with as many bounces", ["bench/pages/bounces_table.sh"],
-          ["diffuse_N, glossy_N, picture_N: of N bounces; pixels in which both see the same surface"], rows)
+          ["diffuse_N, glossy_N, picture_N: of N bounces; pixels in which both see the same surface",
+           "a gathering ray that meets a coat, or a place no probe sees, goes on within its bounce: some light comes a bounce early"], rows)
+
+
+def primary(arguments):
+    """A scene's row: shares of rays from the eye, and three of its views as pictures, nearest to a probe first."""
+    at, label, views = arguments[0], arguments[1], arguments[2].split(",")
+    load = lambda end: json.loads(Path(f"{at}.{end}.json").read_text())
+    race = load("race")
+    row = {"label": label, "to_probe": " ".join(f"{race['views'][int(i)]['to_probe']:.2f}" for i in views)}
+    for method in race["methods"]:
+        key, one = slug(method["method"]), method["one_eye"]
+        mean, each = one["mean"], [view["right_02"] for view in one["views"]]
+        row |= {f"{key}_right_02": f"{100 * mean['right_02']:.2f}", f"{key}_right_1": f"{100 * mean['right_1']:.2f}", f"{key}_unknown": f"{100 * mean['unknown']:.2f}",
+                f"{key}_reads": f"{mean['reads']:.1f}", f"{key}_ms": f"{mean['milliseconds']:.1f}", f"{key}_ends": f"{100 * each[0]:.1f} {100 * each[-1]:.1f}",
+                f"{key}_least": f"{100 * min(each):.1f}"}
+        for kind in ("two_eyes", "two_eyes_through_lenses"):
+            other = method[kind]["mean"]
+            row |= {f"{key}_{kind}_right_02": f"{100 * other['right_02']:.2f}", f"{key}_{kind}_times": f"{other['milliseconds'] / mean['milliseconds']:.2f}"}
+    for picture in ("drawn", "seen"):
+        errors = [load(f"{i}.{picture}.error") for i in views]
+        row |= {f"{picture}_{metric}": " ".join(f"{error[metric]:.{digits}f}" for error in errors) for metric, digits in (("psnr", 1), ("flip", 3), ("mean", 2))}
+        row[f"{picture}_ms"] = " ".join(f"{load(f'{i}.{picture}')['frame_ms']:.0f}" for i in views)
+    print(f'  "{slug(label.split(",")[0])}": {json.dumps(row)},', flush=True)
+
+
+def primaries(arguments):
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("primary_rays.json", "Rays from the eye through light fields, ten views a scene, and pictures of three", ["bench/pages/primary_table.sh"],
+          ["right_02, right_1: %, a hit within that share of its own distance, or a true miss; ends: of the views nearest to a probe and farthest",
+           "480x270; ms: of the trace; times: of two eyes in one pass over one eye; pictures: the nearest view, the middle one, the farthest; drawn: the whole frame with geometry",
+           "cube faces of 208 and octahedral maps of 512 texels: equal memory; B0+ on our probes and on the fitted grid of as many"], rows)
 
 
 def least_and_most(texts):
@@ -330,7 +362,8 @@ def least_and_most(texts):
 
 
 if __name__ == "__main__":
-    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces}
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces,
+             "primary": primary, "primaries": primaries}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -478,6 +478,40 @@ TEST(Command, RenderWritesTheLayersThatWereAskedFor)
     EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
 }
 
+TEST(Command, APictureNeedsNoGeometry)
+{
+    const TestFolder folder;
+    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "6", "-q"}).exit, 0);
+    const CommandResult bake =
+        sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "--effects", "all", "--resolution", "256", "--surface-texels",
+                       "26", "--surface-rays", "16", "--bounces", "2", "-o", folder / "f.sconce", "-q"});
+    ASSERT_EQ(bake.exit, 0) << bake.err;
+    const auto render = [&](const std::string& name, std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {"render", "cornell", "--field", folder / "f.sconce", "--size", "64x36", "-o", folder / name, "--json"});
+        return sconceCommand(more);
+    };
+    ASSERT_EQ(render("drawn.exr", {"--eye=0,1,0.9", "--target=0,0.9,-1"}).exit, 0);
+    const json seen = jsonOf(render("seen.exr", {"--from-field", "--eye=0,1,0.9", "--target=0,0.9,-1", "--samples", "4"}));
+    EXPECT_EQ(seen.at("rays"), 4 * 64 * 36);
+    EXPECT_LT(seen.at("unknown_share").get<double>(), 0.02);
+    EXPECT_EQ(seen.at("layers").size(), 7u) << seen.at("layers");
+    const json same = jsonOf(sconceCommand({"compare", folder / "seen.exr", folder / "drawn.exr", "--same-surface", "--json"}));
+    EXPECT_LT(same.at("other_surface_pixels").get<double>(), 0.1 * 64 * 36);
+    EXPECT_NEAR(same.at("mean").get<double>(), 1.0, 0.05);
+    EXPECT_LT(same.at("relmse").get<double>(), 0.02);
+
+    const json eyes = jsonOf(render("eyes.exr", {"--from-field", "--stereo", "0.064", "--lens", "0.22,0.24", "--aov", "beauty,unknown"}));
+    EXPECT_EQ(eyes.at("width"), 128);
+    EXPECT_EQ(eyes.at("layers"), json({"beauty", "unknown"}));
+    EXPECT_EQ(render("x.exr", {"--from-field", "--effects", "all"}).exit, 2);
+    EXPECT_EQ(render("x.exr", {"--stereo", "0.064"}).exit, 2);
+    expectSentence(render("x.exr", {"--from-field", "--lens=-0.5,0"}), 2, "folds");
+    expectSentence(render("x.exr", {"--from-field", "--stereo", "-1"}), 2, "-1 m apart");
+    expectSentence(render("x.exr", {"--from-field", "--aov", "direct"}), 2, "direct");
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
+}
+
 // Light groups from bake to picture: dimmed live, dimmed in the file and path-traced in the dimmed scene are the same light.
 TEST(Command, LightGroupsAreDimmedInPicturesFilesAndReferences)
 {

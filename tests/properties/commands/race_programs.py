@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The programs that race tracers, from end to end on one small light field.
 
-race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE COMMAND
+race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS COMMAND
 
 sconce_tessellation cuts and bakes a scene; rays of it that sconce_ray_accuracy records have the same answers from sconce_replay.
-sconce_light_response switches the lamp of a live field.
+sconce_light_response switches the lamp of a live field. sconce_primary_rays looks into one from two places.
 """
 import json
 import pathlib
@@ -31,7 +31,7 @@ def untimed(rows):
 
 
 def main():
-    ray_accuracy, replay, tessellation, light_response, command = sys.argv[1:]
+    ray_accuracy, replay, tessellation, light_response, primary_rays, command = sys.argv[1:]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         probes, rays = folder / "p.json", folder / "r.rays"
@@ -52,6 +52,14 @@ def main():
         expect(first[0]["right_1"] > 0.85, f"ours is wrong: {first[0]}")
         timed = json.loads(run(replay, rays, "--field", field, "--runs", 2, "--timed", 500, "--json").stdout)
         expect(untimed(timed) != timed, f"timed runs have no times: {timed}")
+
+        looks = json.loads(run(primary_rays, "cornell", "--field", field, "--views", 2, "--width", 64, "--height", 36, "--runs", 1).stdout)
+        nearest, farthest = (view["to_probe"] for view in looks["views"])
+        expect(0 < nearest < farthest < 2, f"views are {nearest} and {farthest} m from a probe")
+        for kind in ("one_eye", "two_eyes", "two_eyes_through_lenses"):
+            mean = looks["methods"][0][kind]["mean"]
+            shares = [mean[part] for part in ("right_1", "too_near", "too_far", "unknown")]
+            expect(abs(sum(shares) - 1) < 1e-9 and shares[0] > 0.7 and mean["right_02"] < shares[0], f"{kind}: {mean}")
 
         lights, live = folder / "l.json", folder / "live.sconce"
         lights.write_text('{"lights":[{"type":"point","position":[0,1.5,0],"intensity":[1,1,1]}]}', encoding="utf-8")
