@@ -9,6 +9,7 @@
 #include "runtime/field/light_groups.h"
 #include "runtime/field/live_light.h"
 #include "runtime/frame/indirect_light.h"
+#include "runtime/frame/input_check.h"
 
 namespace sconce
 {
@@ -84,6 +85,12 @@ Result<LiveLight> LiveLight::load(const Device& device, const LightField& field,
 Result<IndirectLight> IndirectLight::create(const Device& device, const LightField& field, const Desc& desc)
 {
     return makeIndirectLight(device.gpu(), field, desc);
+}
+
+Result<std::vector<std::string>> validateInputs(const Device& device, const LightField& field, const FrameInputs& inputs,
+                                                const gpu::FrameView& view)
+{
+    return checkInputs(device.gpu(), field, inputs, view);
 }
 
 Result<RayTracer> RayTracer::create(const Device& device, const LightField& field)

@@ -240,6 +240,16 @@ private:
     std::unique_ptr<State> owned;
 };
 
+/// Looks for what hosts get wrong with a frame: a depth that isn't reversed, a matrix that is transposed, mirrored, in centimetres or of
+/// another frame, normals of the view, colours that were decoded twice, and more. It compares the G-buffer with the surfaces that the field
+/// knows, and tries what else it could mean. For development: it makes a pass, submits it twice and waits. Most of the picture should be
+/// what the field was baked from.
+/// @param inputs  visible to compute shaders' sampled reads
+/// @return  a sentence each with its remedy, the gravest first; none: nothing was found
+/// Errors: badArgument (a view is missing, a frame of no pixels), outOfMemory, deviceFailure.
+Result<std::vector<std::string>> validateInputs(const Device& device, const LightField& field, const FrameInputs& inputs,
+                                                const gpu::FrameView& view);
+
 /// Traces lists of rays through a light field: for a host's own questions. A shared handle; it keeps its light field.
 class RayTracer
 {

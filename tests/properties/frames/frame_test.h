@@ -54,6 +54,34 @@ protected:
         return bakeLightField(gpu().host, scene, probes, bake, {}, report);
     }
 
+    /// An image of a host's, rows of `width` pixels, in the layout in which shaders read it.
+    GpuImage image(const std::vector<glm::vec4>& values, uint32_t width, const char* what)
+    {
+        ImageDesc desc;
+        desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+        desc.width = width;
+        desc.height = uint32_t(values.size()) / width;
+        desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        auto made = gpu().makeImage(desc, what);
+        auto buffer = gpu().makeBufferWith<glm::vec4>(values, 0, what);
+        EXPECT_TRUE(made && buffer);
+        const auto status = gpu().submit(
+            [&](VkCommandBuffer cmd)
+            {
+                constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+                constexpr VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+                constexpr VkImageLayout target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+                transition(gpu(), cmd, *made, {VK_IMAGE_LAYOUT_UNDEFINED, target, all, all, any, any});
+                VkBufferImageCopy copy{};
+                copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                copy.imageExtent = {desc.width, desc.height, 1};
+                gpu().vk.CmdCopyBufferToImage(cmd, buffer->handle(), made->handle(), target, 1, &copy);
+                transition(gpu(), cmd, *made, {target, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, all, all, any, any});
+            });
+        EXPECT_TRUE(status);
+        return std::move(*made);
+    }
+
     /// @param drawn  what is in the picture; it may differ from what the field was baked from
     Result<RenderedFrame> drawWith(const FieldData& field, const Scene& drawn, const RenderSettings& settings)
     {

@@ -33,32 +33,6 @@ protected:
     }
     void TearDown() override { setenv("SCONCE_NAN_SCAN", before.c_str(), 1); }
 
-    GpuImage picture(const std::vector<glm::vec4>& values, const char* what)
-    {
-        ImageDesc desc;
-        desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
-        desc.width = desc.height = kSide;
-        desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        auto image = gpu().makeImage(desc, what);
-        auto buffer = gpu().makeBufferWith<glm::vec4>(values, 0, what);
-        EXPECT_TRUE(image && buffer);
-        const auto status = gpu().submit(
-            [&](VkCommandBuffer cmd)
-            {
-                constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-                constexpr VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-                constexpr VkImageLayout target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-                transition(gpu(), cmd, *image, {VK_IMAGE_LAYOUT_UNDEFINED, target, all, all, any, any});
-                VkBufferImageCopy copy{};
-                copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-                copy.imageExtent = {kSide, kSide, 1};
-                gpu().vk.CmdCopyBufferToImage(cmd, buffer->handle(), image->handle(), target, 1, &copy);
-                transition(gpu(), cmd, *image, {target, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, all, all, any, any});
-            });
-        EXPECT_TRUE(status);
-        return std::move(*image);
-    }
-
     std::string before;
 };
 
@@ -92,8 +66,8 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
             pixel[int(planted / 4 % (planted % 4 == 3 ? 1 : 4))] = odd[planted % 5];
         }
     normal[0] = glm::vec4(0, 0, 0, 0.3f); // of no length
-    const GpuImage depthImage = picture(depth, "host's depth"), normalImage = picture(normal, "host's normals"),
-                   baseImage = picture(base, "host's base colour");
+    const GpuImage depthImage = image(depth, kSide, "host's depth"), normalImage = image(normal, kSide, "host's normals"),
+                   baseImage = image(base, kSide, "host's base colour");
 
     IndirectLight::Desc desc;
     desc.width = desc.height = kSide;
