@@ -21,7 +21,7 @@ constexpr const char* kUsage = R"(usage: host SCENE.gltf|SCENE.glb FIELD.sconce 
   --size WxH      pixels (default: 640x360)
   --frames N      frames that are drawn, 1 to 1000; more than one are filtered over time (default: 1)
   --left-handed   a world with z turned round and a camera that looks along +z; the picture is the same
-  --validation    with the validation layer; a message of it is a failure
+  --validation    with the validation layer, and Sconce's look at its inputs; what they find is a failure
 )";
 
 struct Options
@@ -135,6 +135,10 @@ void draw(const Vulkan& vulkan, Allocators& lent, const Options& options)
                 gi.record(cmd, camera, options.convention, 1 + frame);
                 lighting.record(cmd, camera, options.convention, sun, shadow);
             });
+
+    const std::vector<std::string> faults = options.validation ? gi.faults() : std::vector<std::string>();
+    for (const std::string& fault : faults) std::fprintf(stderr, "host: %s\n", fault.c_str());
+    if (!faults.empty()) throw std::runtime_error("Sconce's inputs are wrong");
 
     const char* names[] = {"direct", "diffuse_indirect", "glossy_indirect", ""};
     std::vector<ExrLayer> layers;

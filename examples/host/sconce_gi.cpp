@@ -46,7 +46,7 @@ void SconceGi::record(VkCommandBuffer cmd, const Camera& camera, Convention conv
     const glm::vec3 axes = convention.axes();
     const glm::dmat4 turned = glm::scale(glm::dmat4(1.0), glm::dvec3(axes));
     const auto clipFromField = [&](const Camera& c) { return clipFromWorld(c, convention, double(size.width) / size.height) * turned; };
-    sconce::gpu::FrameView view = field->frameView(size.width, size.height);
+    view = field->frameView(size.width, size.height);
     view.worldFromClip = glm::inverse(clipFromField(camera));
     view.eye = axes * camera.eye;
     view.seed = seed;
@@ -58,6 +58,11 @@ void SconceGi::record(VkCommandBuffer cmd, const Camera& camera, Convention conv
     }
     before = camera;
     light->record(cmd, view);
+}
+
+std::vector<std::string> SconceGi::faults() const
+{
+    return valueOf(sconce::validateInputs(*device, *field, inputs, view));
 }
 
 std::array<VkImageView, 4> SconceGi::terms(VkImageView nothing) const

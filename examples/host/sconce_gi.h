@@ -25,7 +25,11 @@ public:
     /// Goes once the GPU is done. @param lent  outlives it. @param temporal  filter over frames that follow one another
     SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem::path& field, VkExtent2D size, bool temporal);
 
-    void setGBuffer(const GBuffer& buffer) { light->setInputs({buffer.depth, buffer.normalRoughness, buffer.baseColorMetallic}); }
+    void setGBuffer(const GBuffer& buffer)
+    {
+        inputs = {buffer.depth, buffer.normalRoughness, buffer.baseColorMetallic};
+        light->setInputs(inputs);
+    }
     /// After the G-buffer, before composition; records alone.
     void record(VkCommandBuffer cmd, const Camera& camera, Convention convention, uint32_t seed);
     /// Diffuse, rough, glossy and mirror, in layout General, as sconce_gi.glsl binds them. @param nothing  in place of what is not made
@@ -34,6 +38,8 @@ public:
     glm::vec3 sky() const { return field->info().sky; }
     /// Whether diffuse light has emitters and sky in it; else they are the host's to draw, as the sun is.
     bool hasAllDiffuse() const { return field->holdsSurfaceLight(); }
+    /// What is wrong with the G-buffer and the view of the frame recorded last, a sentence each; waits for the GPU.
+    std::vector<std::string> faults() const;
     uint64_t bytes() const { return device->bytes(); } // of device memory, by the library's own count
 
 private:
@@ -42,4 +48,6 @@ private:
     std::optional<sconce::LightField> field;
     std::optional<sconce::IndirectLight> light;
     std::optional<Camera> before;
+    sconce::FrameInputs inputs;
+    sconce::gpu::FrameView view{};
 };
