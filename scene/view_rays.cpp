@@ -1,5 +1,6 @@
 #include "scene/view_rays.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -43,6 +44,17 @@ Result<ViewRays> ViewRays::create(const Camera& camera, const View& view)
                                      view.lens.x, view.lens.y, std::sqrt(rr))};
     }
     return ViewRays(camera, view);
+}
+
+std::vector<glm::uvec2> ViewRays::pixelsInTiles(uint32_t first, uint32_t last) const
+{
+    std::vector<glm::uvec2> pixels;
+    pixels.reserve(size_t(width()) * (last - first));
+    for (uint32_t tileY = first; tileY < last; tileY += kTile)
+        for (uint32_t tileX = 0; tileX < width(); tileX += kTile)
+            for (uint32_t y = tileY; y < std::min(tileY + kTile, last); ++y)
+                for (uint32_t x = tileX; x < std::min(tileX + kTile, width()); ++x) pixels.emplace_back(x, y);
+    return pixels;
 }
 
 ViewRay ViewRays::ray(uint32_t x, uint32_t y, uint32_t sample) const

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "base/result.h"
 #include "scene/scene.h"
 
@@ -41,8 +43,14 @@ public:
 
     uint32_t width() const { return view.width * (view.eyesApart > 0.0f ? 2u : 1u); } // of both eyes' pictures
     uint32_t height() const { return view.height; }
+    uint32_t samples() const { return view.samples; }
+    vec3 forward() const { return pinhole.forward; } // unit
     /// @param x, y, sample  below width(), height() and View::samples
     ViewRay ray(uint32_t x, uint32_t y, uint32_t sample) const;
+
+    static constexpr uint32_t kTile = 8; // pixels a side
+    /// The pixels of rows from `first` to before `last`, tile by tile: rays that lie beside each other in a trace then look the same way.
+    std::vector<glm::uvec2> pixelsInTiles(uint32_t first, uint32_t last) const;
 
 private:
     ViewRays(const Camera& camera, const View& seen) : view(seen), pinhole(camera, seen.width, seen.height) {}

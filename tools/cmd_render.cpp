@@ -341,15 +341,18 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
     return exitOk;
 }
 
-/// A picture that no geometry is drawn for.
-int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::string& device, const LightField& field, const Camera& camera,
-                        uint32_t samples, const Context& context)
+View viewOf(const RenderOptions& options, uint32_t samples)
 {
-    const Stopwatch watch;
     View view{.width = options.width, .height = options.height, .samples = samples, .eyesApart = options.stereo};
     if (!options.lens.empty()) view.lens = {options.lens[0], options.lens[1]};
-    const Result<ViewRays> rays = ViewRays::create(camera, view);
-    if (!rays) return fail(rays.error());
+    return view;
+}
+
+/// A picture that no geometry is drawn for.
+int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::string& device, const LightField& field, const ViewRays& rays,
+                        const Context& context)
+{
+    const Stopwatch watch;
     const std::optional<Baseline> baseline = baselineNamed(options.tracer);
     const Result<RayTracer> tracer = makeRayTracer(gpu, field, baseline ? traceRaysPass(*baseline) : Spirv{});
     if (!tracer) return fail(tracer.error());
@@ -357,20 +360,20 @@ int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::strin
     std::vector<double> milliseconds;
     for (uint32_t i = 0; i < options.frames; ++i)
     {
-        Result<FieldPicture> one = drawFromField(*tracer, camera, view, *rays, consoleProgress(context));
+        Result<FieldPicture> one = drawFromField(*tracer, rays, consoleProgress(context));
         if (!one) return fail(one.error());
         drawn = std::move(*one);
-        milliseconds.push_back(drawn.milliseconds);
+        if (drawn.milliseconds > 0.0) milliseconds.push_back(drawn.milliseconds);
     }
     Json json = {{"device", device},
                  {"tracer", options.tracer},
                  {"from_field", true},
-                 {"samples", samples},
+                 {"samples", rays.samples()},
                  {"stereo", options.stereo},
-                 {"lens", {view.lens.x, view.lens.y}},
+                 {"lens", options.lens},
                  {"frames", options.frames},
                  {"dim", options.dims},
-                 {"frame_ms", median(milliseconds)},
+                 {"frame_ms", milliseconds.empty() ? Json(nullptr) : Json(median(milliseconds))},
                  {"rays", drawn.rays},
                  {"unknown_share", double(drawn.unknown) / double(drawn.rays)},
                  {"fetches_per_ray", drawn.fetchesPerRay},
@@ -381,7 +384,7 @@ int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::strin
         print(json);
     else
         std::cout << fmt::format("{}: {}x{} from the field alone on {}, {} rays in {:f} ms, {:.3f} % that no probe could answer\n",
-                                 options.pictures.output, rays->width(), rays->height(), device, drawn.rays, median(milliseconds),
+                                 options.pictures.output, rays.width(), rays.height(), device, drawn.rays, median(milliseconds),
                                  100.0 * double(drawn.unknown) / double(drawn.rays));
     return exitOk;
 }
@@ -401,6 +404,13 @@ int runRender(RenderOptions options, const Context& context)
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
     if (!camera) return fail(camera.error());
+    std::optional<ViewRays> fromField;
+    if (options.fromField)
+    {
+        Result<ViewRays> rays = ViewRays::create(*camera, viewOf(options, settings.glossyRays));
+        if (!rays) return fail(rays.error());
+        fromField = std::move(*rays);
+    }
     // The area pass has our tracer built in, which can't read an opponent's octahedral maps.
     if (options.areaShadows == kField && options.tracer != "ours")
         return fail(ErrorCode::badArgument,
@@ -467,13 +477,13 @@ int runRender(RenderOptions options, const Context& context)
         if (!dimmed) return fail(dimmed.error());
         groupsMs = *dimmed;
     }
-    if (options.fromField)
+    if (fromField)
     {
         if (data->radiance.empty())
             note(context,
                  "Note: the light field was baked without the effects glossy and mirror; what is seen is as blurred as its prefiltered "
                  "radiance. Bake it with --effects all.");
-        return drawWithoutGeometry(options, **gpu, device->name(), *field, *camera, settings.glossyRays, context);
+        return drawWithoutGeometry(options, **gpu, device->name(), *field, *fromField, context);
     }
     if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
         note(context,

@@ -12,30 +12,21 @@ namespace
 
 using Text = twin::LightFieldTwin<float>;
 
-constexpr uint32_t kTile = 8; // pixels a side: rays that lie beside each other in a trace look the same way
-
-/// The rays of rows of a picture, tile by tile, a pixel's beside each other.
+/// The rays of rows of a picture, a pixel's beside each other.
 struct Rows
 {
     std::vector<gpu::Ray> rays;
     std::vector<uint32_t> pixels; // that the rays are of
 
-    Rows(const ViewRays& of, uint32_t samples, uint32_t first, uint32_t last)
+    Rows(const ViewRays& of, uint32_t first, uint32_t last)
     {
-        for (uint32_t tileY = first; tileY < last; tileY += kTile)
-            for (uint32_t tileX = 0; tileX < of.width(); tileX += kTile)
-                for (uint32_t y = tileY; y < std::min(tileY + kTile, last); ++y)
-                    for (uint32_t x = tileX; x < std::min(tileX + kTile, of.width()); ++x) add(of, samples, x, y);
-    }
-
-    void add(const ViewRays& of, uint32_t samples, uint32_t x, uint32_t y)
-    {
-        for (uint32_t sample = 0; sample < samples; ++sample)
-        {
-            const ViewRay ray = of.ray(x, y, sample);
-            rays.push_back({.origin = ray.origin, .direction = ray.direction, .normal = vec3(0.0f)});
-            pixels.push_back(y * of.width() + x);
-        }
+        for (const glm::uvec2 at : of.pixelsInTiles(first, last))
+            for (uint32_t sample = 0; sample < of.samples(); ++sample)
+            {
+                const ViewRay ray = of.ray(at.x, at.y, sample);
+                rays.push_back({.origin = ray.origin, .direction = ray.direction, .normal = vec3(0.0f)});
+                pixels.push_back(at.y * of.width() + at.x);
+            }
     }
 };
 
@@ -79,30 +70,28 @@ struct Layers
 
 } // namespace
 
-Result<FieldPicture> drawFromField(const RayTracer& tracer, const Camera& camera, const View& view, const ViewRays& rays,
-                                   const Progress& progress)
+Result<FieldPicture> drawFromField(const RayTracer& tracer, const ViewRays& rays, const Progress& progress)
 {
     constexpr size_t kPiece = size_t(1) << 18; // rays at most between two looks at the progress, a row of tiles at least
     FieldPicture made;
     made.images.width = rays.width();
     made.images.height = rays.height();
     Layers layers(made.images);
-    const size_t inTileRow = size_t(kTile) * rays.width() * view.samples;
-    const auto rows = uint32_t(std::max<size_t>(1, kPiece / inTileRow)) * kTile;
-    const vec3 forward = glm::normalize(camera.forward);
+    const size_t inTileRow = size_t(ViewRays::kTile) * rays.width() * rays.samples();
+    const auto rows = uint32_t(std::max<size_t>(1, kPiece / inTileRow)) * ViewRays::kTile;
     double fetches = 0.0, handoffs = 0.0;
     for (uint32_t first = 0; first < rays.height(); first += rows)
     {
         if (!progress("trace", double(first) / rays.height())) return Error{ErrorCode::cancelled, "Interrupted; nothing was written."};
-        const Rows piece(rays, view.samples, first, std::min(first + rows, rays.height()));
+        const Rows piece(rays, first, std::min(first + rows, rays.height()));
         std::vector<gpu::RayHit> hits(piece.rays.size());
         double milliseconds = 0.0;
         if (Status traced = tracer.trace(piece.rays, hits, &milliseconds); !traced) return traced.error();
         made.milliseconds += milliseconds;
         for (size_t i = 0; i < hits.size(); ++i)
         {
-            layers.add(piece.pixels[i], hits[i], 1.0f / float(view.samples));
-            if (i % view.samples == 0) layers.name(piece.pixels[i], piece.rays[i], hits[i], forward);
+            layers.add(piece.pixels[i], hits[i], 1.0f / float(rays.samples()));
+            if (i % rays.samples() == 0) layers.name(piece.pixels[i], piece.rays[i], hits[i], rays.forward());
             made.unknown += hits[i].status == Text::kUnknown ? 1 : 0;
             fetches += hits[i].distanceReads + hits[i].indexReads;
             handoffs += hits[i].handoffs;

@@ -24,7 +24,6 @@ struct FieldPicture
 
 /// Primary rays through a light field (McGuire et al. 2017, section 5; Donow 2016, chapter 5). Beauty is the mean of a pixel's rays, the
 /// other layers are of its first. Errors: cancelled; as RayTracer::trace().
-Result<FieldPicture> drawFromField(const RayTracer& tracer, const Camera& camera, const View& view, const ViewRays& rays,
-                                   const Progress& progress);
+Result<FieldPicture> drawFromField(const RayTracer& tracer, const ViewRays& rays, const Progress& progress);
 
 } // namespace sconce::tools

@@ -2,8 +2,7 @@
 # Pictures without geometry: rays from the eye through baked fields, ours and B0+ on the same probes and on a grid of as many, in ten views a scene,
 # against Embree; and pictures of three of them, nearest to a probe, in the middle and farthest, beside the drawn frame's, against the path tracer.
 # Writes bench/results/primary_rays.json. primary_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE, RACE=the command and
-# sconce_primary_rays, built when not given, VIEWS=n [10], SIZE=WxH of the pictures [480x270], SPP=paths a pixel [256], RESOLUTION=texels [416; B0+ has octahedral
-# maps of as many bytes], OUT=folder, whose fields and references are kept [out/primary].
+# sconce_primary_rays, built when not given, VIEWS=n [10], SIZE=WxH of the pictures [480x270], SPP=paths a pixel [256], OUT=folder, whose fields and references are kept [out/primary].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 scenes=${SCONCE_SCENES:-../shared/scenes}

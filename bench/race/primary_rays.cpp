@@ -99,18 +99,14 @@ Result<std::vector<Seen>> chooseViews(const Scene& scene, const RayScene& truth,
 
 RaySet raysOf(const RayScene& truth, const Camera& camera, const View& view)
 {
-    constexpr uint32_t kTile = 8; // pixels a side, as `sconce render --from-field` sends them
     const ViewRays rays = *ViewRays::create(camera, view);
     std::vector<vec3> origins, directions;
-    for (uint32_t tileY = 0; tileY < rays.height(); tileY += kTile)
-        for (uint32_t tileX = 0; tileX < rays.width(); tileX += kTile)
-            for (uint32_t y = tileY; y < std::min(tileY + kTile, rays.height()); ++y)
-                for (uint32_t x = tileX; x < std::min(tileX + kTile, rays.width()); ++x)
-                {
-                    const ViewRay ray = rays.ray(x, y, 0);
-                    origins.push_back(ray.origin);
-                    directions.push_back(ray.direction);
-                }
+    for (const glm::uvec2 at : rays.pixelsInTiles(0, rays.height()))
+    {
+        const ViewRay ray = rays.ray(at.x, at.y, 0);
+        origins.push_back(ray.origin);
+        directions.push_back(ray.direction);
+    }
     return raySetFrom(truth, origins, directions);
 }
 

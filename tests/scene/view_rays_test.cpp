@@ -79,6 +79,18 @@ TEST(ViewRays, ALensShowsThingsWhereItsFormulaSays)
         }
 }
 
+TEST(ViewRays, TilesHoldEachPixelOfTheRowsOnce)
+{
+    const auto rays = ViewRays::create(straight(), {.width = 21, .height = kHeight});
+    ASSERT_TRUE(rays);
+    std::vector<int> seen(size_t(21) * kHeight, 0);
+    const std::vector<glm::uvec2> pixels = rays->pixelsInTiles(8, 19);
+    for (const glm::uvec2 at : pixels) ++seen[size_t(at.y) * 21 + at.x];
+    for (size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i / 21 >= 8 && i / 21 < 19 ? 1 : 0) << i;
+    EXPECT_EQ(pixels[7], glm::uvec2(7, 8));
+    EXPECT_EQ(pixels[8], glm::uvec2(0, 9)) << "a tile's rows before the next tile";
+}
+
 TEST(ViewRays, WhatHasNoSenseIsRefused)
 {
     const auto refused = [](const View& view)
