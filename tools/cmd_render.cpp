@@ -299,17 +299,18 @@ int runRender(RenderOptions options, const Context& context)
                                       "with the same --effects.",
                                       effect.name));
 
-    // After everything that can be refused without a device, which takes longer to start than all of that together.
-    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
-    if (!device) return fail(device.error());
-    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
-    if (!gpu) return fail(gpu.error());
     std::string diffuse;
     Result<RenderSettings> chosen = settingsFor(options, *plan, *data, options.field, diffuse);
     if (!chosen) return fail(chosen.error());
     RenderSettings settings = std::move(*chosen);
     settings.width = options.width;
     settings.height = options.height;
+
+    // After everything that can be refused without a device, which takes longer to start than all of that together.
+    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
+    if (!device) return fail(device.error());
+    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
+    if (!gpu) return fail(gpu.error());
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
     std::optional<double> groupsMs;

@@ -337,6 +337,12 @@ void Panel::buildLight(ViewState& state, const Session& session)
             for (const Light& light : session.litScene().lights)
                 if (light.type == LightType::directional) sunDirection = light.direction, sunIrradiance = light.intensity;
         sunRead = true;
+        // A script's, or the panel's own.
+        if (state.light.sun && state.light.sun->direction != sunTaken)
+        {
+            sunTaken = sunDirection = state.light.sun->direction;
+            if (state.light.sun->irradiance) sunIrradiance = *state.light.sun->irradiance;
+        }
         float height = glm::degrees(std::asin(std::clamp(-sunDirection.y, -1.0f, 1.0f))),
               around = glm::degrees(std::atan2(sunDirection.x, sunDirection.z));
         ImGui::SliderFloat("sun's height", &height, 0.0f, 90.0f, "%.1f degrees");

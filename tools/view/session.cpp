@@ -69,6 +69,11 @@ Result<std::unique_ptr<Session>> Session::create(Gpu& gpu, Desc desc)
     return made;
 }
 
+Session::~Session()
+{
+    dropRenderer();
+}
+
 void Session::dropRenderer()
 {
     gpu.vk.DeviceWaitIdle(gpu.host.device);

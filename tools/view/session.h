@@ -39,6 +39,10 @@ public:
     /// Errors: as makeLightField().
     static Result<std::unique_ptr<Session>> create(Gpu& gpu, Desc desc);
 
+    ~Session(); // after waiting for the device
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
     /// Makes what the next frame needs. After an error there may be nothing to draw with, until it succeeds with other knobs.
     /// Errors: badArgument (a knob, an effect, a light: named), outOfMemory, deviceFailure.
     Status apply(const ViewKnobs& knobs, const LightChoice& light, uint32_t width, uint32_t height);
