@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=${PRESET:-release}
 tools/install_packages.sh
-tools/install_packages.sh tests/packages.txt || echo "Without these neither the report's page nor the sources' format is tested." >&2
+tools/install_packages.sh tests/packages.txt || echo "Without these neither the report's page nor the viewer nor the sources' format is tested." >&2
 tools/build.sh "$preset"
 
 # Every Vulkan device that a test makes has the validation layer on; a message fails the test that caused it.

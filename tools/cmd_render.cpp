@@ -16,6 +16,8 @@
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
+#include "tools/frame_pictures.h"
+#include "tools/frame_setup.h"
 #include "tools/from_field.h"
 #include "tools/light_group_options.h"
 #include "tools/live_light_options.h"
@@ -28,113 +30,40 @@ namespace sconce::tools
 namespace
 {
 
-const std::vector<std::string> kFrameLayers = {"beauty",    "direct", "diffuse_indirect", "glossy_indirect", "depth",  "normal", "albedo",
-                                               "roughness", "probe",  "handoffs",         "fetches",         "unknown"};
-
-constexpr std::string_view kSurface = knobs::kDiffuse[0], kIrradiance = knobs::kDiffuse[1], kPatches = knobs::kDiffuse[2],
-                           kTraced = knobs::kDiffuse[3];
-constexpr std::string_view kMaps = knobs::kAreaShadows[0], kField = knobs::kAreaShadows[1];
-static_assert(kSurface == "surface" && kPatches == "patches" && kTraced == "traced" && kField == "field");
-
-struct RenderOptions
+struct RenderOptions : FrameChoice
 {
     SceneOptions scene;
     CameraOptions camera;
     PictureOptions pictures;
-    std::string field, effects = "auto", tracer = "ours", device;
+    std::string field, tracer = "ours", device;
     QualityOption quality;
     std::vector<std::string> groups, dims;
     std::string sunPath;
     bool fromField = false;
     float stereo = 0.0f;     // metres between the eyes; 0: one
     std::vector<float> lens; // k1, k2
-    uint32_t width = knobs::width.value, height = knobs::height.value, samples = knobs::glossyRays.value, frames = knobs::drawnFrames.value,
-             seed = knobs::frameSeed.value;
-    std::optional<float> roughness;
-    float raysBelow = knobs::raysBelow.value;
-    uint32_t traceEvery = knobs::traceEvery.value, areaSamples = 0; // 0: by --samples
-    bool noDenoise = !knobs::denoise.value, temporal = knobs::temporal.value;
-    std::string diffuse{knobs::diffuse.value}, areaShadows{knobs::areaShadows.value};
+    uint32_t width = knobs::width.value, height = knobs::height.value, frames = knobs::drawnFrames.value;
 };
 
-/// Changes the light of a field on the device, as a host does before a frame. @return  milliseconds by the device's clock; 0: it has none
-Result<double> dimField(Gpu& gpu, const LightField& field, const FieldData& data, std::span<const vec3> weights)
+/// What `light` becomes by the options of a day.
+struct Day
 {
-    auto groups = makeLightGroups(gpu, field, data);
-    if (!groups) return groups.error();
-    auto timer = GpuTimer::create(gpu, 1);
-    if (!timer) return timer.error();
-    if (Status status = groups->set(weights); !status) return status.error();
-    const Status recorded = gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            timer->reset(cmd);
-            groups->record(cmd, &*timer);
-        });
-    if (!recorded) return recorded.error();
-    double milliseconds = 0.0;
-    for (const GpuTimer::Scope& scope : timer->read()) milliseconds += scope.milliseconds;
-    return milliseconds;
-}
-
-/// Lights a field with live links anew, to the end. @return  milliseconds by the device's clock, a pass
-Result<std::map<std::string, double>> settle(Gpu& gpu, LiveLight& live, const LightState& state)
-{
-    if (Status status = live.set(state); !status) return status.error();
-    auto timer = GpuTimer::create(gpu, 8);
-    if (!timer) return timer.error();
-    std::map<std::string, double> milliseconds;
-    while (!live.settled())
-    {
-        const Status recorded = gpu.submit(
-            [&](VkCommandBuffer cmd)
-            {
-                timer->reset(cmd);
-                live.record(cmd, {}, &*timer);
-            });
-        if (!recorded) return recorded.error();
-        for (const GpuTimer::Scope& scope : timer->read()) milliseconds[scope.name] += scope.milliseconds;
-    }
-    return milliseconds;
-}
-
-/// The light that pictures are drawn in.
-struct Lighting
-{
-    std::vector<vec3> weights;  // of the field's groups; empty: as they were baked
-    std::vector<Light> fixed;   // of the scene, that stay
-    std::vector<Light> lights;  // that move
+    Lighting light;
     std::vector<SunPlace> path; // of the sun, a picture each; empty: it stays
-    bool moves = false;         // live light is to be made
 };
 
-/// Takes what moves out of the scene, changes the rest of its light as the options say, and puts what moves there again.
-Result<Lighting> chooseLight(const RenderOptions& options, const FieldData& data, std::span<const LightGroupDesc> groups, Scene& scene)
+/// Changes the scene's light as the options say. Errors: as lightFor(), and badArgument where something doesn't fit the field.
+Result<Day> chooseLight(const RenderOptions& options, const FieldData& data, std::span<const LightGroupDesc> groups, Scene& scene)
 {
-    Lighting made;
-    const bool live = data.live.links > 0;
-    if (!live && !options.sunPath.empty())
+    if (data.live.links == 0 && !options.sunPath.empty())
         return Error{
             ErrorCode::badArgument,
             fmt::format("The lights of light field '{}' can't move; bake it with --live-links, or leave --sun-path out.", options.field)};
-    const std::vector<LightGroupDesc> own = data.groups.empty() ? std::vector(groups.begin(), groups.end()) : groupsOf(data.groups);
-    if (live)
-    {
-        auto taken = takeLiveLights(scene, own);
-        if (!taken) return taken.error();
-        made.lights = std::move(*taken);
-        made.moves = !data.live.lit || !options.dims.empty() || !options.sunPath.empty() ||
-                     !std::ranges::equal(made.lights, data.live.lights, sameLight);
-    }
-    if (!options.dims.empty())
-    {
-        auto dimmed = dimScene(scene, own, options.dims);
-        if (!dimmed) return dimmed.error();
-        if (!data.groups.empty()) made.weights = std::move(*dimmed);
-    }
-    made.fixed = scene.lights;
-    scene.lights.insert(scene.lights.end(), made.lights.begin(), made.lights.end());
-    if (made.moves && options.tracer != "ours")
+    auto light = lightFor(data, groups, options.dims, scene);
+    if (!light) return light.error();
+    Day made{std::move(*light), {}};
+    made.light.moves = made.light.moves || !options.sunPath.empty();
+    if (made.light.moves && options.tracer != "ours")
         return Error{ErrorCode::badArgument,
                      fmt::format("--tracer {} finds no light that has moved; relight the field (`sconce relight`), or leave it out.",
                                  options.tracer)};
@@ -198,17 +127,16 @@ std::string numbered(const std::string& file, uint32_t number)
 }
 
 /// What --quality says and the command line doesn't.
-Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tracer)
+Status takeQuality(RenderOptions& options, Quality& tracer)
 {
-    settings.glossyRays = options.samples;
     const Result<std::optional<PointSettings>> quality = options.quality.load();
     if (!quality) return quality.error();
     if (*quality)
     {
         const RenderSettings& frame = (*quality)->frame;
         tracer = (*quality)->quality;
-        options.quality.take("--samples", settings.glossyRays, frame.glossyRays);
         if (options.areaSamples == 0) options.quality.take("--samples", options.areaSamples, frame.areaSamples);
+        options.quality.take("--samples", options.samples, frame.glossyRays);
         options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
         options.quality.take("--temporal", options.temporal, frame.effects.temporal);
         options.quality.take("--diffuse", options.diffuse,
@@ -220,60 +148,7 @@ Status takeQuality(RenderOptions& options, RenderSettings& settings, Quality& tr
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
     }
-    const uint32_t aSample = options.areaShadows == kField ? knobs::kTracedAreaSamples : settings.areaSamples;
-    settings.areaSamples = options.areaSamples != 0 ? options.areaSamples : aSample * options.samples;
-    settings.raysBelow = options.raysBelow;
-    settings.traceEvery = options.traceEvery;
     return success();
-}
-
-/// The plan for the scene as it is drawn: with --roughness every surface has that.
-Result<EffectPlan> choosePlan(const RenderOptions& options, const Scene& scene)
-{
-    if (!options.roughness) return planEffects(checkScene(scene, options.raysBelow), options.effects);
-    Scene drawn = scene;
-    for (Material& material : drawn.materials)
-    {
-        material.roughness = *options.roughness;
-        material.metallicRoughnessTexture.image = -1; // metals stay what their factor says; only roughness counts for reflections
-    }
-    return planEffects(checkScene(drawn, options.raysBelow), options.effects);
-}
-
-void addColours(ImageSet& images, const char* name, const std::vector<vec3>& pixels)
-{
-    if (pixels.empty()) return;
-    Layer& layer = images.add(name, 3);
-    for (size_t i = 0; i < pixels.size(); ++i)
-        for (int c = 0; c < 3; ++c) layer.pixels[3 * i + size_t(c)] = pixels[i][c];
-}
-
-void addNumbers(ImageSet& images, const char* name, const std::vector<float>& pixels)
-{
-    if (!pixels.empty()) images.add(name, 1).pixels = pixels;
-}
-
-ImageSet imagesOf(const RenderedFrame& frame)
-{
-    ImageSet images;
-    images.width = frame.width;
-    images.height = frame.height;
-    addColours(images, "beauty", frame.beauty);
-    addColours(images, "direct", frame.direct);
-    addColours(images, "diffuse_indirect", frame.diffuseIndirect);
-    addColours(images, "glossy_indirect", frame.glossyIndirect);
-    addNumbers(images, "depth", frame.depth);
-    addColours(images, "normal", frame.normal);
-    addColours(images, "albedo", frame.albedo);
-    addNumbers(images, "roughness", frame.roughness);
-    const char* const names[] = {"probe", "handoffs", "fetches", "unknown"};
-    for (int part = 0; part < 4 && !frame.counts.empty(); ++part)
-    {
-        Layer& layer = images.add(names[part], 1);
-        for (size_t i = 0; i < frame.counts.size(); ++i)
-            layer.pixels[i] = part == 0 && frame.counts[i].x == gpu::kNoProbe ? -1.0f : float(frame.counts[i][part]);
-    }
-    return images;
 }
 
 /// Means over the pixels that traced rays.
@@ -312,18 +187,18 @@ double median(std::vector<double> values)
 }
 
 /// A picture for each place of the sun, with light that has settled.
-int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightField& field, LiveLight& live, const Lighting& lighting,
+int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightField& field, LiveLight& live, const Day& day,
             const RenderSettings& settings, const Camera& camera, const EffectPlan& plan, const Context& context)
 {
     const Stopwatch watch;
     Json json;
-    for (uint32_t i = 0; i < lighting.path.size(); ++i)
+    for (uint32_t i = 0; i < day.path.size(); ++i)
     {
-        std::vector<Light> lights = lighting.lights;
-        turnSun(lights, lighting.path[i]);
-        const auto milliseconds = settle(gpu, live, {lights, lighting.weights});
+        std::vector<Light> lights = day.light.lights;
+        turnSun(lights, day.path[i]);
+        const auto milliseconds = settle(gpu, live, {lights, day.light.weights});
         if (!milliseconds) return fail(milliseconds.error());
-        scene.lights = lighting.fixed;
+        scene.lights = day.light.fixed;
         scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
         capScene(scene, plan);
         const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, context);
@@ -331,7 +206,7 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
         PictureOptions pictures = options.pictures;
         pictures.output = numbered(options.pictures.output, i);
         pictures.png = numbered(options.pictures.png, i);
-        Json one = {{"sun", toJson(lighting.path[i].direction)}, {"live_light_ms", *milliseconds}};
+        Json one = {{"sun", toJson(day.path[i].direction)}, {"live_light_ms", *milliseconds}};
         if (Status status = pictures.write(imagesOf(drawn->frame), one); !status) return fail(status.error());
         if (!context.json) std::cout << pictures.output << "\n";
         json["pictures"].push_back(one);
@@ -392,11 +267,10 @@ int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::strin
 int runRender(RenderOptions options, const Context& context)
 {
     const Stopwatch watch;
-    RenderSettings settings;
     Quality tracer;
-    if (const Status taken = takeQuality(options, settings, tracer); !taken) return fail(taken.error());
+    if (const Status taken = takeQuality(options, tracer); !taken) return fail(taken.error());
     // Before the scene is loaded: a misspelt layer should cost no waiting.
-    if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : kFrameLayers); !problem.empty())
+    if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : frameLayers()); !problem.empty())
         return fail(ErrorCode::badArgument, problem);
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
     if (!groups) return fail(groups.error());
@@ -416,7 +290,7 @@ int runRender(RenderOptions options, const Context& context)
         return fail(ErrorCode::badArgument,
                     fmt::format("--area-shadows field is traced by our tracer; leave it out, or --tracer {}.", options.tracer));
     // The plan first, by what the whole scene calls for; what it gives up then goes, or it would leave shadow maps and passes behind.
-    const Result<EffectPlan> plan = choosePlan(options, *scene);
+    const Result<EffectPlan> plan = planFor(options, *scene);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
     const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
@@ -435,45 +309,35 @@ int runRender(RenderOptions options, const Context& context)
                                       "with the same --effects.",
                                       effect.name));
 
+    std::string diffuse;
+    Result<RenderSettings> chosen = settingsFor(options, *plan, *data, options.field, diffuse);
+    if (!chosen) return fail(chosen.error());
+    RenderSettings settings = std::move(*chosen);
+    settings.width = options.width;
+    settings.height = options.height;
+
     // After everything that can be refused without a device, which takes longer to start than all of that together.
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
     if (!device) return fail(device.error());
     Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
-    settings.width = options.width;
-    settings.height = options.height;
-    // The plan says what the scene calls for; how a pass does its work is left to the command line.
-    settings.effects = plan->indirect();
-    settings.effects.denoise = settings.effects.denoise && !options.noDenoise;
-    settings.effects.temporal = options.temporal;
-    const std::string diffuse =
-        !options.diffuse.empty() ? options.diffuse : std::string(data->surfaceLight.empty() ? kIrradiance : kSurface);
-    if (diffuse == kSurface && data->surfaceLight.empty())
-        return fail(
-            ErrorCode::badArgument,
-            fmt::format("Light field '{}' holds no surface light; bake it with --surface-texels above 0, or give another --diffuse.",
-                        options.field));
-    settings.effects.surfaceLight = diffuse == kSurface;
-    settings.effects.tracedDiffuse = diffuse == kTraced;
-    settings.effects.patches = diffuse == kPatches;
-    settings.effects.fieldShadows = options.areaShadows == kField;
     Result<LightField> field = makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
     std::optional<double> groupsMs;
     std::map<std::string, double> liveMs; // by pass
     std::optional<LiveLight> live;
-    if (lighting->moves)
+    if (lighting->light.moves)
     {
         auto made = makeLiveLight(**gpu, *field, *data);
         if (!made) return fail(made.error());
         live = std::move(*made);
-        const auto settled = settle(**gpu, *live, {lighting->lights, lighting->weights});
+        const auto settled = settle(**gpu, *live, {lighting->light.lights, lighting->light.weights});
         if (!settled) return fail(settled.error());
         liveMs = *settled;
     }
-    else if (!lighting->weights.empty())
+    else if (!lighting->light.weights.empty())
     {
-        const Result<double> dimmed = dimField(**gpu, *field, *data, lighting->weights);
+        const Result<double> dimmed = dimField(**gpu, *field, *data, lighting->light.weights);
         if (!dimmed) return fail(dimmed.error());
         groupsMs = *dimmed;
     }
@@ -489,8 +353,6 @@ int runRender(RenderOptions options, const Context& context)
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
              "radiance. Bake it with --effects all.");
-    settings.roughness = options.roughness;
-    settings.seed = options.seed;
     // An opponent's rays start further off their surface, or they meet it again; that is in metres, the setting a share of the diagonal.
     if (const std::optional<Baseline> baseline = baselineNamed(options.tracer))
     {
@@ -557,26 +419,9 @@ void addRenderCommand(CLI::App& app, Context& context)
     command->add_option("--field", options->field, ".sconce file of `sconce bake` (required)")->required()->type_name("FILE");
     options->camera.add(command);
     addSize(command, options->width, options->height);
-    command
-        ->add_option(
-            "--effects", options->effects,
-            described("auto: what the scene calls for, on the tiles of the picture that need it; all: every effect over the whole picture, "
-                      "for the same pixels; none; or a list of effects, as `sconce check` names them, and denoise: of the passes only "
-                      "those, of lights and surfaces all, where none of the kind is named; -NAME takes one away, as in auto,-mirror,-sun",
-                      options->effects))
-        ->type_name("auto|all|none|LIST");
-    addKnob(command, "--rays-below", options->raysBelow, knobs::raysBelow, "R");
-    addKnob(command, "--diffuse", options->diffuse, knobs::diffuse);
-    addKnob(command, "--area-shadows", options->areaShadows, knobs::areaShadows);
+    addFrameOptions(command, *options);
     addTracer(command, options->tracer);
-    addKnob(command, "--samples", options->samples, knobs::glossyRays);
-    addKnob(command, "--area-samples", options->areaSamples, knobs::areaSamples);
-    addKnob(command, "--trace-every", options->traceEvery, knobs::traceEvery);
-    addSwitch(command, "--no-denoise", options->noDenoise, knobs::denoise);
-    addSwitch(command, "--temporal", options->temporal, knobs::temporal);
-    addKnob(command, "--roughness", options->roughness, knobs::roughness, "R");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
-    addKnob(command, "--seed", options->seed, knobs::frameSeed);
     addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
     addDims(command, options->dims, "; of a field's groups its light, too");
     command
@@ -604,7 +449,7 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->expected(2)
         ->type_name("K1,K2");
     addDevice(command, options->device);
-    options->pictures.add(command, kFrameLayers);
+    options->pictures.add(command, frameLayers());
     options->quality.add(command);
     // What only geometry's pixels have.
     for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--no-denoise",

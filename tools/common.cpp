@@ -17,6 +17,7 @@
 #include "base/listed.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_gltf.h"
+#include "tools/view/walk.h"
 
 namespace sconce::tools
 {
@@ -336,14 +337,7 @@ Result<Camera> CameraOptions::choose(const Scene& scene) const
     {
         const vec3 forward = *target - *eye;
         if (!(glm::length(forward) > 0.0f)) return Error{ErrorCode::badArgument, "--eye and --target are the same point; move one."};
-        Camera camera;
-        camera.name = "custom";
-        camera.eye = *eye;
-        camera.forward = glm::normalize(forward);
-        const vec3 world = std::abs(camera.forward.y) > 0.999f ? vec3(0.0f, 0.0f, -1.0f) : vec3(0.0f, 1.0f, 0.0f);
-        camera.up = glm::normalize(world - glm::dot(world, camera.forward) * camera.forward);
-        camera.verticalFov = glm::radians(fov);
-        return camera;
+        return lookAt(*eye, *target, glm::radians(fov));
     }
     if (scene.cameras.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no camera; give --eye and --target.", scene.name)};

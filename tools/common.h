@@ -141,6 +141,7 @@ void addTuneCommand(CLI::App& app, Context& context);
 void addManualCommand(CLI::App& app, Context& context);
 void addProbeCommand(CLI::App& app, Context& context);
 void addExplainCommand(CLI::App& app, Context& context);
+void addViewCommand(CLI::App& app, Context& context);
 void addDoctorCommand(CLI::App& app, Context& context);
 
 } // namespace sconce::tools

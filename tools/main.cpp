@@ -28,6 +28,7 @@ int main(int argc, char** argv)
     addProbeCommand(app, context);
     addExplainCommand(app, context);
     addReferenceCommands(app, context);
+    addViewCommand(app, context);
     addBenchCommand(app, context);
     addTuneCommand(app, context);
     addKnobsCommand(app, context);

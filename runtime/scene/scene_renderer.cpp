@@ -235,12 +235,33 @@ Status SceneRenderer::makeCompose()
     return success();
 }
 
+namespace
+{
+
+std::string settingsFault(const RenderSettings& settings)
+{
+    return firstFault({faultOf(knobs::glossyRays, settings.glossyRays), faultOf(knobs::raysBelow, settings.raysBelow),
+                       faultOf(knobs::areaSamples, settings.areaSamples),
+                       settings.roughness ? faultOf(knobs::roughness, *settings.roughness) : std::string()});
+}
+
+} // namespace
+
+Status SceneRenderer::setSampling(const RenderSettings& wanted)
+{
+    if (std::string fault = settingsFault(wanted); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
+    settings.glossyRays = wanted.glossyRays;
+    settings.raysBelow = wanted.raysBelow;
+    settings.areaSamples = wanted.areaSamples;
+    settings.normalOffset = wanted.normalOffset;
+    settings.seed = wanted.seed;
+    return success();
+}
+
 Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const DeviceScene& scene, const LightField& field,
                                                              const RenderSettings& settings)
 {
-    const std::string fault = firstFault({faultOf(knobs::glossyRays, settings.glossyRays), faultOf(knobs::raysBelow, settings.raysBelow),
-                                          faultOf(knobs::areaSamples, settings.areaSamples),
-                                          settings.roughness ? faultOf(knobs::roughness, *settings.roughness) : std::string()});
+    const std::string fault = settingsFault(settings);
     if (!fault.empty()) return Error{ErrorCode::badArgument, fault};
     const bool mapless = std::ranges::any_of(scene.lights().lights, [](const gpu::GpuLight& l) { return l.shadowLayer == kNoShadowMap; });
     if (mapless && settings.effects.diffuse && !readsSurfaceLight(settings.effects, field.info()) && !settings.effects.tracedDiffuse &&
@@ -470,11 +491,30 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index
             record(cmd, camera, settings.seed + index, &*timer);
         });
     if (!status) return status.error();
+    auto frame = read();
+    if (frame) frame->times = timer->read();
+    return frame;
+}
 
+FramePictures SceneRenderer::pictures() const
+{
+    const auto made = [](const GpuImage& image) { return image ? &image : nullptr; };
+    return {&beauty,
+            &direct,
+            made(diffuseLayer),
+            made(glossyLayer),
+            &normalRoughness,
+            &baseColorMetallic,
+            &depth,
+            made(indirect->state().countImage),
+            kNear * field.info().scale};
+}
+
+Result<RenderedFrame> SceneRenderer::read()
+{
     RenderedFrame frame;
     frame.width = settings.width;
     frame.height = settings.height;
-    frame.times = timer->read();
     const size_t pixels = size_t(frame.width) * frame.height;
     auto colors = [&](std::vector<vec3>& target, const GpuImage& image, VkImageLayout layout,
                       std::vector<float>* fourth = nullptr) -> Status

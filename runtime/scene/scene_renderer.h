@@ -42,6 +42,16 @@ struct RenderedFrame
                                          // open, of hidden surfaces, of the nearest texel, of one probe, of two; 0 with other diffuse light
 };
 
+/// What a frame has drawn, for whoever shows it; in VK_IMAGE_LAYOUT_GENERAL, G-buffer and depth in SHADER_READ_ONLY_OPTIMAL. Null: not
+/// made.
+struct FramePictures
+{
+    const GpuImage *beauty, *direct, *diffuseLayer, *glossyLayer; // RGBA32F, radiance to the eye
+    const GpuImage *normalRoughness, *baseColorMetallic, *depth;
+    const GpuImage* counts; // RGBA32UI, as RenderedFrame::counts
+    float depthScale;       // metres along the view's axis times what `depth` holds
+};
+
 class SceneRenderer
 {
 public:
@@ -52,6 +62,12 @@ public:
     /// Records, submits, waits and reads every picture back.
     /// @param index  of the frame in a sequence: added to the seed
     Result<RenderedFrame> render(const Camera& camera, uint32_t index = 0);
+    /// Reads the pictures of the last recorded frame back, once it was submitted; without times. Submits and waits.
+    Result<RenderedFrame> read();
+    FramePictures pictures() const;
+    /// What passes read anew in each frame, from the next on: glossyRays, raysBelow, areaSamples, normalOffset and seed. The rest of the
+    /// settings is fixed. Errors: badArgument (names the knob); what was set before stays.
+    Status setSampling(const RenderSettings& wanted);
     /// The next frame doesn't follow the one before: the camera is cut.
     void cut() { before.reset(); }
     /// Light is another from the next frame on: histories forget what was.

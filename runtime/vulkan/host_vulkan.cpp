@@ -5,12 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "base/listed.h"
+#include "runtime/vulkan/made_device.h"
+
 namespace sconce
 {
 
@@ -23,12 +24,6 @@ template <class F> F load(VkInstance instance, const char* name)
 {
     return reinterpret_cast<F>(vkGetInstanceProcAddr(instance, name));
 }
-
-struct MessageLog
-{
-    std::mutex mutex;
-    std::vector<std::string> messages;
-};
 
 VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
@@ -147,13 +142,13 @@ int usableFamily(PFN_vkGetInstanceProcAddr getProc, VkInstance instance, VkPhysi
     return -1;
 }
 
-Result<VkInstance> makeInstance(bool validation, MessageLog* log)
+Result<VkInstance> makeInstance(bool validation, MessageLog* log, std::span<const char* const> wanted = {})
 {
     VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     application.pApplicationName = "sconce";
     application.apiVersion = kApiVersion;
     const char* layer = "VK_LAYER_KHRONOS_validation";
-    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    std::vector<const char*> extensions(wanted.begin(), wanted.end());
     const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
@@ -170,15 +165,19 @@ Result<VkInstance> makeInstance(bool validation, MessageLog* log)
         info.pNext = &features;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &layer;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = &extension;
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
+    info.enabledExtensionCount = uint32_t(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult result = load<PFN_vkCreateInstance>(nullptr, "vkCreateInstance")(&info, nullptr, &instance);
     if (result == VK_ERROR_LAYER_NOT_PRESENT)
         return Error{ErrorCode::missingFeature,
                      "The layer VK_LAYER_KHRONOS_validation is not installed; install the Vulkan validation layers or "
                      "run without validation"};
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+        return Error{ErrorCode::missingFeature,
+                     fmt::format("No Vulkan driver has all of {}; install one that can draw into windows", fmt::join(extensions, ", "))};
     if (result != VK_SUCCESS) return vulkanError("vkCreateInstance", result, "check that a Vulkan driver is installed");
     return instance;
 }
@@ -228,21 +227,23 @@ std::vector<std::string> missingFeatures(PFN_vkGetInstanceProcAddr getProc, VkIn
     return missing;
 }
 
+MadeDevice::~MadeDevice()
+{
+    // The messenger goes after the device, to hear what its destruction finds still alive.
+    if (host.device) load<PFN_vkDestroyDevice>(host.instance, "vkDestroyDevice")(host.device, nullptr);
+    if (messenger)
+        load<PFN_vkDestroyDebugUtilsMessengerEXT>(host.instance, "vkDestroyDebugUtilsMessengerEXT")(host.instance, messenger, nullptr);
+    if (host.instance) load<PFN_vkDestroyInstance>(host.instance, "vkDestroyInstance")(host.instance, nullptr);
+}
+
+std::string MadeDevice::name() const
+{
+    return propertiesOf(host.instance, host.physicalDevice).deviceName;
+}
+
 struct OwnDevice::State
 {
-    HostVulkan host;
-    MessageLog log; // outlives the instance, whose messenger writes to it
-    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
-    bool validation = false;
-
-    ~State()
-    {
-        // The messenger goes after the device, to hear what its destruction finds still alive.
-        if (host.device) load<PFN_vkDestroyDevice>(host.instance, "vkDestroyDevice")(host.device, nullptr);
-        if (messenger)
-            load<PFN_vkDestroyDebugUtilsMessengerEXT>(host.instance, "vkDestroyDebugUtilsMessengerEXT")(host.instance, messenger, nullptr);
-        if (host.instance) load<PFN_vkDestroyInstance>(host.instance, "vkDestroyInstance")(host.instance, nullptr);
-    }
+    std::unique_ptr<MadeDevice> made;
 };
 
 OwnDevice::OwnDevice(std::unique_ptr<State> made) : state(std::move(made)) {}
@@ -251,21 +252,21 @@ OwnDevice& OwnDevice::operator=(OwnDevice&&) noexcept = default;
 OwnDevice::~OwnDevice() = default;
 const HostVulkan& OwnDevice::host() const
 {
-    return state->host;
+    return state->made->host;
 }
 bool OwnDevice::validating() const
 {
-    return state->validation;
+    return state->made->validation;
 }
 std::string OwnDevice::name() const
 {
-    return propertiesOf(state->host.instance, state->host.physicalDevice).deviceName;
+    return state->made->name();
 }
 
 std::vector<std::string> OwnDevice::validationMessages() const
 {
-    std::scoped_lock lock(state->log.mutex);
-    return state->log.messages;
+    std::scoped_lock lock(state->made->log.mutex);
+    return state->made->log.messages;
 }
 
 Result<OwnDevice> OwnDevice::create()
@@ -273,28 +274,45 @@ Result<OwnDevice> OwnDevice::create()
     return create(Desc{});
 }
 
+namespace
+{
+
+/// The messenger in makeInstance() covers the making and the destruction of the instance alone; this one, all between.
+void listen(MadeDevice& made)
+{
+    VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    info.pfnUserCallback = keepMessage;
+    info.pUserData = &made.log;
+    load<PFN_vkCreateDebugUtilsMessengerEXT>(made.host.instance, "vkCreateDebugUtilsMessengerEXT")(made.host.instance, &info, nullptr,
+                                                                                                   &made.messenger);
+}
+
+} // namespace
+
 Result<OwnDevice> OwnDevice::create(const Desc& desc)
 {
+    auto made = makeDevice(desc);
+    if (!made) return made.error();
     auto state = std::make_unique<State>();
+    state->made = std::move(*made);
+    return OwnDevice(std::move(state));
+}
+
+Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std::span<const char* const> instanceExtensions,
+                                               std::span<const char* const> deviceExtensions)
+{
+    auto made = std::make_unique<MadeDevice>();
     const char* wish = std::getenv("SCONCE_VALIDATION");
-    state->validation = desc.validation || (wish && std::strcmp(wish, "1") == 0);
-    auto instance = makeInstance(state->validation, &state->log);
+    made->validation = desc.validation || (wish && std::strcmp(wish, "1") == 0);
+    auto instance = makeInstance(made->validation, &made->log, instanceExtensions);
     if (!instance) return instance.error();
-    HostVulkan& host = state->host;
+    HostVulkan& host = made->host;
     host.instance = *instance;
     host.getInstanceProcAddr = vkGetInstanceProcAddr;
     host.memoryBudget = desc.memoryBudget;
-    if (state->validation)
-    {
-        // The messenger in makeInstance() covers the making and the destruction of the instance alone; this one, all between.
-        VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-        info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-        info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
-        info.pfnUserCallback = keepMessage;
-        info.pUserData = &state->log;
-        load<PFN_vkCreateDebugUtilsMessengerEXT>(host.instance, "vkCreateDebugUtilsMessengerEXT")(host.instance, &info, nullptr,
-                                                                                                  &state->messenger);
-    }
+    if (made->validation) listen(*made);
     auto chosen = chooseDevice(host.instance, desc.device);
     if (!chosen) return chosen.error();
     host.physicalDevice = *chosen;
@@ -315,10 +333,16 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.all};
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    info.enabledExtensionCount = uint32_t(deviceExtensions.size());
+    info.ppEnabledExtensionNames = deviceExtensions.data();
     const VkResult result = load<PFN_vkCreateDevice>(host.instance, "vkCreateDevice")(host.physicalDevice, &info, nullptr, &host.device);
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+        return Error{ErrorCode::missingFeature,
+                     fmt::format("The device {} has not all of {}; update its driver or choose another device",
+                                 propertiesOf(host.instance, *chosen).deviceName, fmt::join(deviceExtensions, ", "))};
     if (result != VK_SUCCESS) return vulkanError("vkCreateDevice", result, "check the driver with vulkaninfo");
     load<PFN_vkGetDeviceQueue>(host.instance, "vkGetDeviceQueue")(host.device, host.queueFamily, 0, &host.queue);
-    return OwnDevice(std::move(state));
+    return made;
 }
 
 Result<std::vector<DeviceSummary>> deviceSummary()

@@ -17,7 +17,7 @@ namespace
 {
 
 const std::vector<std::string> kCommands = {"scenes",  "doctor", "check",     "place",   "bake",  "info", "verify", "render",
-                                            "relight", "trace",  "reference", "compare", "bench", "tune", "knobs"};
+                                            "relight", "trace",  "reference", "compare", "bench", "tune", "knobs",  "view"};
 
 /// stdout as JSON; a failure prints everything there was.
 json jsonOf(const CommandResult& result)
