@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 
+#include <fmt/format.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -62,9 +63,13 @@ std::string keyText(uint64_t key)
 
 Result<std::string> keyOfThisBuild()
 {
-    std::ifstream stream("/proc/self/exe", std::ios::binary);
-    std::string program((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    if (program.empty()) return Error{ErrorCode::fileError, "Cannot read this program at '/proc/self/exe'; check that /proc is there."};
+    const char* const self = "/proc/self/exe";
+    std::error_code failed;
+    const uintmax_t size = std::filesystem::file_size(self, failed);
+    std::string program(failed ? 0 : size, '\0');
+    std::ifstream stream(self, std::ios::binary);
+    if (program.empty() || !stream.read(program.data(), std::streamsize(program.size())))
+        return Error{ErrorCode::fileError, fmt::format("Cannot read this program at '{}'; check that /proc is there.", self)};
     return keyText(keyWithoutCommit(std::move(program)));
 }
 

@@ -114,17 +114,16 @@ TEST(BakeJournal, NoFlippedBitIsTakenForContent)
     const TestFolder folder;
     const std::string whole = writeJournal(folder / "whole");
     for (size_t at = 0; at < whole.size(); ++at)
-        for (int bit = 0; bit < 8; ++bit)
-        {
-            std::string flipped = whole;
-            flipped[at] = char(flipped[at] ^ (1 << bit));
-            writeText(folder / "j", flipped);
-            JournalFile journal = opened(folder / "j");
-            const bool pid = at >= 56 && at < 64; // which is no content
-            EXPECT_EQ(journal.records() == 4, pid) << at;
-            EXPECT_EQ(journal.note().empty(), pid) << at;
-            for (const BakePart& kept : journal.parts()) EXPECT_EQ(journal.find(kept), bytes(kTexts[kept.index])) << at;
-        }
+    {
+        std::string flipped = whole;
+        flipped[at] = char(flipped[at] ^ (1 << at % 8));
+        writeText(folder / "j", flipped);
+        JournalFile journal = opened(folder / "j");
+        const bool pid = at >= 56 && at < 64; // which is no content
+        EXPECT_EQ(journal.records() == 4, pid) << at;
+        EXPECT_EQ(journal.note().empty(), pid) << at;
+        for (const BakePart& kept : journal.parts()) EXPECT_EQ(journal.find(kept), bytes(kTexts[kept.index])) << at;
+    }
 }
 
 TEST(BakeJournal, OneOfAnotherBakeIsNotUsedAndResumeLeavesItAlone)

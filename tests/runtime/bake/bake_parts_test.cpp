@@ -58,9 +58,9 @@ protected:
     PartBake()
     {
         settings.resolution = 64;
-        settings.bounces = 2;
-        settings.surfaceTexels = 8;
-        settings.surfaceRays = 8;
+        settings.bounces = 1;
+        settings.surfaceTexels = 26;
+        settings.surfaceRays = 4;
         settings.octree.voxels = 16;
         settings.rays = &rays;
     }
@@ -79,7 +79,8 @@ protected:
     Result<FieldData> bakeGroups(BakeJournal* journal)
     {
         settings.journal = journal;
-        settings.liveLinks = 4;
+        settings.liveLinks = 8;
+        settings.surfaceRays = 8;
         return bakeLightGroups(device.host(), scene, probes, settings, {}, {}, report);
     }
     const TestFolder folder;
@@ -156,7 +157,7 @@ TEST_F(PartBake, APartOfAnotherLengthIsBakedAnew)
 TEST_F(PartBake, ShardsInAnyOrderAreTheWhole)
 {
     const std::string whole = bytesOfField(bake(nullptr));
-    for (const uint32_t count : {1u, 2u, 3u, 7u})
+    for (const uint32_t count : {2u, 7u}) // the command's test has all of 1, 2, 3, 7
     {
         Memory merged;
         for (const BakeStage stage : {BakeStage::maps, BakeStage::gather})
