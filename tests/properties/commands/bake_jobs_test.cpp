@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -46,7 +47,7 @@ protected:
         EXPECT_FALSE(std::filesystem::exists(journalOf(output))) << "all that it has is in the output";
         return result.exit == 0 ? readText(folder / output) : "";
     }
-    std::string journalOf(const std::string& output) const { return folder / ("." + output + ".journal"); }
+    std::string journalOf(const std::string& output) const { return folder / fmt::format(".{}.journal", output); }
     std::string whole() const { return bytesBy(bake("whole", {"--no-journal"}), "whole"); }
     /// Refused with a sentence that has these words.
     static void expectRefused(const Arguments& arguments, int exit, const std::string& words)
