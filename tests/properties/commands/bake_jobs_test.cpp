@@ -58,7 +58,7 @@ protected:
     }
     std::string shard(uint32_t index, uint32_t count, const std::string& output, const Arguments& more = {}) const
     {
-        Arguments all = bake(output, {"--shard", std::to_string(index) + "/" + std::to_string(count)});
+        Arguments all = bake(output, {"--shard", fmt::format("{}/{}", index, count)});
         all.insert(all.end(), more.begin(), more.end());
         bytesBy(all, output);
         return folder / output;
@@ -141,7 +141,7 @@ TEST_F(BakeJobs, ShardsInAnyOrderMergeToTheWhole)
     for (const uint32_t count : {1u, 2u, 3u, 7u})
     {
         Arguments parts;
-        for (uint32_t i = 0; i < count; ++i) parts.push_back(shard(i, count, "part" + std::to_string(i)));
+        for (uint32_t i = 0; i < count; ++i) parts.push_back(shard(i, count, fmt::format("part{}", i)));
         std::ranges::rotate(parts, parts.begin() + count / 2);
         EXPECT_EQ(bytesBy(merge(parts, "merged"), "merged"), undisturbed) << count;
     }
@@ -152,7 +152,7 @@ TEST_F(BakeJobs, WhatIsGatheredIsSharedOutAfterTheMaps)
     const std::string undisturbed = whole();
     const Arguments maps{shard(1, 2, "m1"), shard(0, 2, "m0")};
     Arguments parts = maps;
-    for (uint32_t i = 0; i < 3; ++i) parts.push_back(shard(i, 3, "g" + std::to_string(i), {"--after", maps[0], maps[1]}));
+    for (uint32_t i = 0; i < 3; ++i) parts.push_back(shard(i, 3, fmt::format("g{}", i), {"--after", maps[0], maps[1]}));
     expectRefused(merge({maps[0], maps[1], parts[2], parts[4]}, "f"), 3, "what is gathered 1 of 3 shards is missing: 1/3");
     std::ranges::reverse(parts);
     EXPECT_EQ(bytesBy(merge(parts, "f"), "f"), undisturbed);
