@@ -59,6 +59,7 @@ protected:
     {
         settings.resolution = 64;
         settings.bounces = 1;
+        settings.surfaceRefined = 0.0f;
         settings.surfaceTexels = 26;
         settings.surfaceRays = 4;
         settings.octree.voxels = 16;
@@ -101,7 +102,7 @@ TEST_F(PartBake, GoesOnFromAnyPointToTheSameBytes)
     EXPECT_EQ(all.count(BakeStage::octree), 1u);
     EXPECT_EQ(all.count(BakeStage::cells), 1u);
     EXPECT_EQ(all.count(BakeStage::gather), 3u);
-    for (size_t room = 0; room < all.parts.size(); ++room)
+    for (size_t room = 0; room < all.parts.size(); room += 2) // within each stage, and between two
     {
         Memory full;
         full.room = room;
