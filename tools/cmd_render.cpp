@@ -216,9 +216,9 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
     return exitOk;
 }
 
-View viewOf(const RenderOptions& options, uint32_t samples)
+View viewOf(const RenderOptions& options)
 {
-    View view{.width = options.width, .height = options.height, .samples = samples, .eyesApart = options.stereo};
+    View view{.width = options.width, .height = options.height, .samples = options.samples, .eyesApart = options.stereo};
     if (!options.lens.empty()) view.lens = {options.lens[0], options.lens[1]};
     return view;
 }
@@ -281,7 +281,7 @@ int runRender(RenderOptions options, const Context& context)
     std::optional<ViewRays> fromField;
     if (options.fromField)
     {
-        Result<ViewRays> rays = ViewRays::create(*camera, viewOf(options, settings.glossyRays));
+        Result<ViewRays> rays = ViewRays::create(*camera, viewOf(options));
         if (!rays) return fail(rays.error());
         fromField = std::move(*rays);
     }

@@ -131,7 +131,7 @@ void catchInterrupts()
     struct sigaction action = {};
     action.sa_handler = [](int) { interruptedFlag = true; };
     action.sa_flags = SA_RESETHAND; // a second Ctrl-C ends the process at once
-    sigaction(SIGINT, &action, nullptr);
+    for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
 bool interrupted()

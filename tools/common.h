@@ -37,7 +37,8 @@ struct Context
     bool json = false;
     bool quiet = false;
     std::function<int()> action;
-    std::string commandLine; // as it was typed, for what records how it was made
+    std::string commandLine;            // as it was typed, for what records how it was made
+    std::vector<std::string> arguments; // the same, one by one, without the program
 };
 
 /// A command line as a shell takes it: `sconce`, then the arguments, those in single quotes that need it.
@@ -63,7 +64,7 @@ void print(const Json& json);
 void note(const Context& context, const std::string& text);
 
 /// Progress on stderr: a bar with stage, per cent and time left on a terminal, a line now and then elsewhere, nothing when quiet. Cancels
-/// after SIGINT.
+/// after SIGINT or SIGTERM.
 Progress consoleProgress(const Context& context);
 void endProgress(); // leaves the bar's line, if one is drawn
 void catchInterrupts();
@@ -131,6 +132,7 @@ void addSceneCommands(CLI::App& app, Context& context);
 void addKnobsCommand(CLI::App& app, Context& context);
 void addPlaceCommand(CLI::App& app, Context& context);
 void addBakeCommand(CLI::App& app, Context& context);
+void addMergeCommand(CLI::App& app, Context& context);
 void addFieldCommands(CLI::App& app, Context& context);
 void addRenderCommand(CLI::App& app, Context& context);
 void addTraceCommand(CLI::App& app, Context& context);

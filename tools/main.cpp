@@ -18,9 +18,11 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     Context context;
     context.commandLine = spelledForShell(argc, argv);
+    context.arguments.assign(argv + 1, argv + argc);
     addSceneCommands(app, context);
     addPlaceCommand(app, context);
     addBakeCommand(app, context);
+    addMergeCommand(app, context);
     addFieldCommands(app, context);
     addRelightCommand(app, context);
     addRenderCommand(app, context);

@@ -11,6 +11,8 @@
 #include "base/limits.h"
 #include "base/numbers.h"
 #include "base/parallel.h"
+#include "runtime/bake/bake_key.h"
+#include "runtime/bake/bake_parts.h"
 #include "runtime/bake/counted_rays.h"
 #include "runtime/bake/host_memory.h"
 #include "runtime/bake/lamps.h"
@@ -72,6 +74,19 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
          size_t(settings.grid->count.x) * size_t(settings.grid->count.y) * size_t(settings.grid->count.z) != probes.size()))
         return fmt::format("the grid has {}x{}x{} probes but there are {}", settings.grid->count.x, settings.grid->count.y,
                            settings.grid->count.z, probes.size());
+    return {};
+}
+
+std::string shardFault(const BakeSettings& settings, const BakeShard& shard)
+{
+    if (!settings.journal) return "a shard is kept in a journal, and there is none; give BakeSettings::journal";
+    if (shard.count == 0 || shard.count > kMostShards || shard.index >= shard.count)
+        return fmt::format("there is no shard {} of {}; give 1 to {} shards, and count from 0", shard.index, shard.count, kMostShards);
+    if (shard.stage != BakeStage::maps && shard.stage != BakeStage::gather)
+        return fmt::format("stage {} goes not probe by probe; give maps or gather", uint32_t(shard.stage));
+    const bool gathers = surfaceSizeOf(settings.chart, chartSize(settings.chart, settings.resolution), settings.surfaceTexels) > 0;
+    if (settings.light || (shard.stage == BakeStage::gather && !gathers))
+        return "nothing is gathered where there is no surface light, or another field lends it; shard the maps alone, of cube faces";
     return {};
 }
 
@@ -192,6 +207,8 @@ struct Bake
     std::vector<uint32_t> surfaces, direct, emitted; // emitted is empty when the scene has no emitters
     std::vector<gpu::SurfaceTexel> texels;           // empty without surface light
     const Progress& progress;
+    BakeParts parts;                  // of it, that are kept
+    const BakeShard* shard = nullptr; // null: all of it
 
     bool octahedral() const { return field.info.chart == gpu::kChartOctahedral; }
 
@@ -208,32 +225,65 @@ struct Bake
                 std::span(texels).subspan(probe * points, points)};
     }
 
+    /// The faces that octree and summaries are made from; empty where they are the probe's own.
+    std::span<uint32_t> cubeOf(size_t probe)
+    {
+        const size_t words = octahedral() ? cube.info.wordsPerProbe : 0;
+        return words == 0 ? std::span<uint32_t>() : std::span(cube.distance).subspan(probe * words, words);
+    }
+
     Status cancelledIfAsked(std::string_view stage, size_t done, size_t count) const
     {
         if (report(progress, stage, double(done) / double(count))) return success();
         return Error{ErrorCode::cancelled, fmt::format("The bake was stopped at {}, {} of {}", stage, done, count)};
     }
 
+    bool does(BakeStage stage, size_t probe) const { return !shard || (shard->stage == stage && shard->has(probe)); }
+    bool takeMaps(size_t probe);
+    Status bakeMaps(ProbeBaker& baker, size_t probe);
     Status directLight(ProbeBaker& baker);
     Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
     Result<LightField> asItIs(Gpu& gpu);
     Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage);
     Status bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
     Status surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent);
+    Status gather(SurfaceBaker& of);
     std::vector<uint32_t> coarserAlbedo() const;
     Status lentLight(Gpu& gpu, ProbeBaker& baker, const FieldData& light, BakeReport& spent);
 };
 
-Status Bake::directLight(ProbeBaker& baker)
+bool Bake::takeMaps(size_t probe)
+{
+    const ProbeTarget to = target(probe);
+    return parts.take(BakeStage::maps, uint32_t(probe),
+                      {asWritableBytes(to.distance), asWritableBytes(to.radiance), asWritableBytes(to.surface), asWritableBytes(to.emitted),
+                       asWritableBytes(to.irradiance), asWritableBytes(to.texels), asWritableBytes(cubeOf(probe))});
+}
+
+Status Bake::bakeMaps(ProbeBaker& baker, size_t probe)
 {
     std::vector<uint32_t> faces(octahedral() ? size_t(6) * field.info.faceSize * field.info.faceSize : 0);
+    ProbeTarget to = target(probe);
+    to.faces = faces;
+    if (auto status = baker.bakeDirect(field.probes[probe].centre, to); !status) return status;
+    if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cubeOf(probe).data());
+    return parts.keep(BakeStage::maps, uint32_t(probe),
+                      {asBytes(to.distance), asBytes(to.radiance), asBytes(to.surface), asBytes(to.emitted), asBytes(to.irradiance),
+                       asBytes(to.texels), asBytes(cubeOf(probe))});
+}
+
+Status Bake::directLight(ProbeBaker& baker)
+{
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
+        if (shard && shard->stage == BakeStage::maps && !shard->has(i)) continue;
         if (auto status = cancelledIfAsked("probes", i, field.probes.size()); !status) return status;
-        ProbeTarget to = target(i);
-        to.faces = faces;
-        if (auto status = baker.bakeDirect(field.probes[i].centre, to); !status) return status;
-        if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cube.distance.data() + i * cube.info.wordsPerProbe);
+        if (takeMaps(i)) continue;
+        if (!does(BakeStage::maps, i))
+            return Error{
+                ErrorCode::badInput,
+                fmt::format("The maps of probe {} of {} are in no part; give the parts of all shards of the maps", i, field.probes.size())};
+        if (auto status = bakeMaps(baker, i); !status) return status;
     }
     return success();
 }
@@ -241,16 +291,23 @@ Status Bake::directLight(ProbeBaker& baker)
 Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
 {
     FieldData& seen = octahedral() ? cube : field;
-    parallelFor(seen.probes.size(), [&](size_t i) { summariseProbe(seen, i); });
-    const ProbeMaps maps{seen.info, seen.probes, seen.distance};
-    auto octree = buildOctreeOnDevice(gpu, maps, settings, progress);
-    onDevice = bool(octree);
-    // All maps at once may be more than the device has beside the scene; the host gives the same bytes.
-    if (!octree && octree.error().code == ErrorCode::outOfMemory) octree = buildOctree(maps, settings, progress);
-    if (!octree) return octree.error();
+    std::optional<BakeParts::Index> kept = parts.takeIndex(seen.probes);
+    if (!kept)
+    {
+        parallelFor(seen.probes.size(), [&](size_t i) { summariseProbe(seen, i); });
+        const ProbeMaps maps{seen.info, seen.probes, seen.distance};
+        auto octree = buildOctreeOnDevice(gpu, maps, settings, progress);
+        const bool there = bool(octree);
+        // All maps at once may be more than the device has beside the scene; the host gives the same bytes.
+        if (!octree && octree.error().code == ErrorCode::outOfMemory) octree = buildOctree(maps, settings, progress);
+        if (!octree) return octree.error();
+        if (auto status = parts.keepIndex(*octree, there, seen.probes); !status) return status;
+        kept = {std::move(*octree), there};
+    }
+    onDevice = kept->onDevice;
     if (octahedral()) field.probes = cube.probes;
     cube = FieldData();
-    attachOctree(field, *octree);
+    attachOctree(field, kept->octree);
     return success();
 }
 
@@ -305,6 +362,19 @@ Status Bake::bounces(Gpu& gpu, ProbeBaker& baker, const BakeSettings& settings, 
     return success();
 }
 
+Status Bake::gather(SurfaceBaker& of)
+{
+    for (size_t i = 0; i < field.probes.size(); ++i)
+    {
+        if (!does(BakeStage::gather, i)) continue;
+        if (auto status = cancelledIfAsked("surface light", i, field.probes.size()); !status) return status;
+        if (auto status = of.gather(uint32_t(i)); !status) return status;
+    }
+    if (!does(BakeStage::gather, 0)) return success();
+    if (auto status = cancelledIfAsked("light in the open", 0, 1); !status) return status;
+    return of.findCells();
+}
+
 /// Light at the surfaces that probes see, and the probes' radiance of it.
 Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker, const BakeSettings& settings, BakeReport& spent)
 {
@@ -320,14 +390,11 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
                       TriangleGather::Desc{settings.surfaceRays, shadowRays});
     auto surfaces = SurfaceBaker::create(
         gpu, scene, *dark, texels,
-        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live});
+        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live, parts});
     if (!surfaces) return surfaces.error();
-    for (size_t i = 0; i < field.probes.size(); ++i)
-    {
-        if (auto status = cancelledIfAsked("surface light", i, field.probes.size()); !status) return status;
-        if (auto status = surfaces->gather(uint32_t(i)); !status) return status;
-    }
+    if (auto status = gather(*surfaces); !status) return status;
     spent.gatherSeconds = watch.lap();
+    if (shard) return success();
     // What surfaces send of direct light is in the probes' radiance already; so the light without a bounce adds only what it sends besides.
     auto before = surfaces->meanSent();
     for (uint32_t b = 0; before && b <= settings.bounces; ++b)
@@ -432,15 +499,20 @@ BakeSettings lendingBake(BakeSettings settings)
     return settings;
 }
 
-Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
-                                 const Progress& progress, BakeReport& bakeReport)
+namespace
+{
+
+/// @param shard  that is baked; null: all of it
+/// @return  of a shard, a field that lacks what the others do
+Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                          const BakeShard* shard, const Progress& progress, BakeReport& bakeReport)
 {
     if (const std::string fault = argumentFault(probes, settings); !fault.empty())
         return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
     if (scene.triangles.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
     // The field's space before all else: probes, scene and octree are on the device in its units.
-    Bake bake{{}, {}, {}, {}, {}, {}, progress};
+    Bake bake{{}, {}, {}, {}, {}, {}, progress, {}, shard};
     BakeReport spent;
     Stopwatch watch;
     gpu::LightFieldInfo& info = bake.field.info;
@@ -469,6 +541,11 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     // Others stand two near planes off: what is nearer than that plane isn't drawn, and its corners are 1.73 times as far away as its
     // middle.
     const ClearedProbes cleared = clearedOfSurfaces(scene, probes, settings.grid ? 0.0f : 2.0f * kProbeNear * info.diagonal * info.scale);
+    const auto finished = [&](const BakeReport& done)
+    {
+        bakeReport = done;
+        return Result<FieldData>(std::move(bake.field));
+    };
     spent.moved = cleared.moved;
     spent.tight = cleared.tight;
     for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (cleared.positions[i] - info.origin) / info.scale;
@@ -492,6 +569,8 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
                 .emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
         auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
+        // By the layout as this bake found it, with its lamps: for each it is another key, and for each next one the same.
+        if (settings.journal) bake.parts = {settings.journal, bakeKey(scene, probes, settings)};
         auto baker = ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light));
         if (!baker) return baker.error();
         spent.lights = uint32_t(deviceScene->lights().lights.size());
@@ -518,6 +597,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
         }
         if (auto status = bake.directLight(**baker); !status) return status.error();
         spent.probeSeconds = watch.lap();
+        if (shard && shard->stage == BakeStage::maps) return finished(spent);
         // The bounces find their probes by the octree, so it comes before them.
         if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
         if (info.surfaceSize > 0) info.cellShift = cellShiftOf(info);
@@ -529,6 +609,7 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
                                : info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
                                                       : bake.bounces(**gpu, **baker, settings, spent);
         if (!bounced) return bounced.error();
+        if (shard) return finished(spent);
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
         // Made from the light of the last bounce; only then may the radiance go that they are made from.
         if (info.surfaceSize == 0) makePatches(bake.field, bake.surfaces, bake.emitted);
@@ -541,8 +622,24 @@ Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std
     }
     // Patches and prefiltering don't ask; who wanted to stop meanwhile is heard here.
     if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};
-    bakeReport = spent;
-    return std::move(bake.field);
+    return finished(spent);
+}
+
+} // namespace
+
+Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                                 const Progress& progress, BakeReport& report)
+{
+    return bakeAll(host, scene, probes, settings, nullptr, progress, report);
+}
+
+Status bakeShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                 const BakeShard& shard, const Progress& progress, BakeReport& report)
+{
+    if (const std::string fault = shardFault(settings, shard); !fault.empty())
+        return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
+    auto done = bakeAll(host, scene, probes, settings, &shard, progress, report);
+    return done ? success() : Status(done.error());
 }
 
 } // namespace sconce

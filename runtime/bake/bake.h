@@ -16,6 +16,8 @@
 namespace sconce
 {
 
+class BakeJournal; // runtime/bake/bake_journal.h
+enum class BakeStage : uint32_t;
 struct LightLayout; // runtime/bake/surface_baker.h
 
 /// Ranges and prices: base/knobs.h.
@@ -44,6 +46,8 @@ struct BakeSettings
     const FieldData* light = nullptr;
     LightLayout* layout = nullptr; // where light is kept that isn't in texels: an empty one is filled; null: as this bake finds it
     uint64_t hostMemory = knobs::hostBytes.value; // bytes of main memory that it may take; 0: what is free
+    /// Where maps, octree and what is gathered are looked for before the bake works, and kept as soon as they are done. Null: nowhere.
+    BakeJournal* journal = nullptr;
 
     /// Keeps what frames by a plan ask for, and the names of the plan's effects. @param tracedDiffuse  diffuse light by rays, too
     void take(const EffectPlan& plan, bool tracedDiffuse = false);
@@ -52,7 +56,17 @@ struct BakeSettings
 /// The bake that finds light at surfaces for another with these settings to take as its `light`: cube faces of as many texels, no lamps.
 BakeSettings lendingBake(BakeSettings settings);
 
-/// What a bake cost. Seconds are wall-clock.
+/// What one of several processes does of a bake: of a stage that goes probe by probe, every count-th probe. Neighbours, which cost alike,
+/// are then of different shards.
+struct BakeShard
+{
+    uint32_t index = 0, count = 1;
+    BakeStage stage{}; // maps, or gather
+    bool has(size_t probe) const { return probe % count == index; }
+};
+inline constexpr uint32_t kMostShards = 4096;
+
+/// What a bake cost. Seconds are wall-clock. What a journal had done before isn't in it.
 struct BakeReport
 {
     double sceneSeconds = 0.0;   // upload and shadow maps
@@ -83,5 +97,11 @@ struct BakeReport
 /// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, cancelled.
 Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                  const Progress& progress, BakeReport& report);
+
+/// A shard of the same bake, into settings.journal: bakeLightField() with a journal that has the parts of all shards gives the field that
+/// it gives without, to the byte. Stage gather needs the maps of all probes in the journal, and surface light; shard 0 gathers the cells,
+/// too. Errors: as bakeLightField(), and the journal's; badInput: the maps of a probe aren't there; badArgument: no journal, no such shard.
+Status bakeShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                 const BakeShard& shard, const Progress& progress, BakeReport& report);
 
 } // namespace sconce

@@ -91,38 +91,82 @@ std::string groupFault(const BakeSettings& settings)
     return {};
 }
 
-} // namespace
+/// Bakes of one scene: in all light, then in that of each group.
+struct GroupBakes
+{
+    std::vector<LightGroupDesc> groups;
+    std::vector<LightSelection> selected;
+    std::vector<uint32_t> live; // lights of the scene that move
+    LightLayout layout;
+    BakeSettings settings; // with the layout
 
-Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
-                                  std::vector<LightGroupDesc> groups, const Progress& progress, BakeReport& report)
+    /// A group's light alone.
+    Scene sceneOf(const Scene& scene, size_t group) const
+    {
+        Scene alone = scene;
+        for (const uint32_t light : live) alone.lights[light].intensity = vec3(0.0f);
+        for (size_t other = 0; other < groups.size(); ++other)
+            if (other != group) dimLights(alone, selected[other], vec3(0.0f));
+        return alone;
+    }
+    std::string nameOf(size_t group) const { return fmt::format("light group '{}'", groups[group].name); }
+};
+
+/// @param plan  is referred to by its own settings
+Status planGroups(const Scene& scene, const BakeSettings& settings, std::vector<LightGroupDesc> groups, GroupBakes& plan)
 {
     if (std::string fault = groupFault(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
     if (settings.liveLinks > 0 && groups.empty()) groups.push_back({"rest", {}});
     auto selected = selectLights(scene, groups);
     if (!selected) return selected.error();
-    Scene fixed = scene; // what doesn't move
-    const std::vector<uint32_t> live = settings.liveLinks > 0 ? takeLiveLights(groups, *selected) : std::vector<uint32_t>();
-    for (const uint32_t light : live) fixed.lights[light].intensity = vec3(0.0f);
-    LightLayout layout;
-    layout.liveLinks = settings.liveLinks;
-    layout.groups = groups.size();
-    BakeSettings own = settings;
-    own.layout = &layout;
-    const auto baked = [&](const Scene& lit, const std::string& name, BakeReport& spent)
+    if (settings.liveLinks > 0) plan.live = takeLiveLights(groups, *selected);
+    plan.groups = std::move(groups);
+    plan.selected = std::move(*selected);
+    plan.layout.liveLinks = settings.liveLinks;
+    plan.layout.groups = plan.groups.size();
+    plan.settings = settings;
+    plan.settings.layout = &plan.layout;
+    return success();
+}
+
+Progress named(const Progress& progress, const std::string& name)
+{
+    return [&progress, name](std::string_view stage, double done)
+    { return sconce::report(progress, fmt::format("{}: {}", name, stage), done); };
+}
+constexpr const char* kAllLight = "all light";
+
+} // namespace
+
+Status bakeGroupShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                      std::vector<LightGroupDesc> groups, const BakeShard& shard, const Progress& progress, BakeReport& report)
+{
+    GroupBakes plan;
+    if (auto status = planGroups(scene, settings, std::move(groups), plan); !status) return status;
+    if (auto status = bakeShard(host, scene, probes, plan.settings, shard, named(progress, kAllLight), report); !status) return status;
+    plan.layout.live.links = settings.liveLinks; // as the bake of all light leaves it: the groups' don't find links anew
+    for (size_t g = 0; g < plan.groups.size(); ++g)
     {
-        const Progress named = [&](std::string_view stage, double done)
-        { return sconce::report(progress, fmt::format("{}: {}", name, stage), done); };
-        return bakeLightField(host, lit, probes, own, named, spent);
-    };
-    auto field = baked(scene, "all light", report);
+        BakeReport spent;
+        auto status = bakeShard(host, plan.sceneOf(scene, g), probes, plan.settings, shard, named(progress, plan.nameOf(g)), spent);
+        if (!status) return status;
+        addSeconds(report, spent);
+    }
+    return success();
+}
+
+Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                                  std::vector<LightGroupDesc> wanted, const Progress& progress, BakeReport& report)
+{
+    GroupBakes plan;
+    if (auto status = planGroups(scene, settings, std::move(wanted), plan); !status) return status.error();
+    const std::vector<LightGroupDesc>& groups = plan.groups;
+    auto field = bakeLightField(host, scene, probes, plan.settings, named(progress, kAllLight), report);
     if (!field) return field;
     for (size_t g = 0; g < groups.size(); ++g)
     {
-        Scene alone = fixed;
-        for (size_t other = 0; other < groups.size(); ++other)
-            if (other != g) dimLights(alone, (*selected)[other], vec3(0.0f));
         BakeReport spent;
-        auto part = baked(alone, fmt::format("light group '{}'", groups[g].name), spent);
+        auto part = bakeLightField(host, plan.sceneOf(scene, g), probes, plan.settings, named(progress, plan.nameOf(g)), spent);
         if (!part) return part;
         if (!samePlaces(*field, *part))
             return Error{ErrorCode::deviceFailure,
@@ -140,9 +184,9 @@ Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, st
         if (auto status = mixGroups(*field, weights); !status) return status.error();
         return field;
     }
-    field->live = std::move(layout.live);
+    field->live = std::move(plan.layout.live);
     std::vector<Light> lights;
-    for (const uint32_t light : live) lights.push_back(scene.lights[light]);
+    for (const uint32_t light : plan.live) lights.push_back(scene.lights[light]);
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
     const auto relit = settings.lit ? relightField(**gpu, *field, lights, weights)

@@ -18,4 +18,8 @@ namespace sconce
 Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                   std::vector<LightGroupDesc> groups, const Progress& progress, BakeReport& report);
 
+/// bakeShard() of all of these bakes.
+Status bakeGroupShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+                      std::vector<LightGroupDesc> groups, const BakeShard& shard, const Progress& progress, BakeReport& report);
+
 } // namespace sconce

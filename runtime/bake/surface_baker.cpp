@@ -123,15 +123,35 @@ Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, const gp
         });
 }
 
+Status SurfaceBaker::findCells()
+{
+    if (!desc.triangles || !cells.places.empty()) return success();
+    if (auto kept = desc.parts.takeCells(cellWords(field.info()) / gpu::kCellWords, desc.rays))
+    {
+        cells = std::move(*kept);
+        return success();
+    }
+    cells = desc.triangles->gatherCells();
+    return desc.parts.keepCells(cells);
+}
+
 Status SurfaceBaker::gatherTriangles(uint32_t probe)
 {
-    if (cells.places.empty()) cells = desc.triangles->gatherCells();
     const size_t count = texelsOfProbe();
     std::vector<vec4> straight(count), arriving(count), moments(directions() ? count : 0);
     std::vector<gpu::SurfaceTexel> sending(count);
     std::vector<uint32_t> shine(count), direct(desc.live ? count : 0);
-    desc.triangles->gather(probe, {std::span(links).subspan(probe * count * desc.rays, count * desc.rays), straight, arriving, shine,
-                                   moments, sending, direct});
+    const std::span<uint32_t> ends = std::span(links).subspan(probe * count * desc.rays, count * desc.rays);
+    if (!desc.parts.take(BakeStage::gather, probe,
+                         {asWritableBytes(ends), asWritableBytes(straight), asWritableBytes(arriving), asWritableBytes(shine),
+                          asWritableBytes(moments), asWritableBytes(sending), asWritableBytes(direct)}))
+    {
+        desc.triangles->gather(probe, {ends, straight, arriving, shine, moments, sending, direct});
+        auto kept = desc.parts.keep(
+            BakeStage::gather, probe,
+            {asBytes(ends), asBytes(straight), asBytes(arriving), asBytes(shine), asBytes(moments), asBytes(sending), asBytes(direct)});
+        if (!kept) return kept;
+    }
     for (size_t i = 0; i < direct.size(); ++i)
     {
         const uint32_t reach = straight[i].w > 0.0f ? twin::LightFieldTwin<float>::packReach(straight[i].w) : 0u;
@@ -147,12 +167,46 @@ Status SurfaceBaker::gatherTriangles(uint32_t probe)
     return write(texelBuffer, sending);
 }
 
+Status SurfaceBaker::gatherThroughField(uint32_t probe)
+{
+    const size_t count = texelsOfProbe();
+    const std::span<uint32_t> ends = std::span(links).subspan(probe * count * desc.rays, count * desc.rays);
+    if (!desc.parts.kept())
+    {
+        if (auto status = dispatch(gatherPass, true, pushFor(probe, desc.rays), "surface gather", &first); !status) return status;
+        return gpu->download(linkBuffer, 0, std::as_writable_bytes(ends));
+    }
+    std::vector<vec4> straight(count), arriving(count), moments(directions() ? count : 0);
+    struct Array
+    {
+        const Buffer& buffer;
+        std::span<vec4> values;
+    };
+    const Array arrays[] = {{first, straight}, {light, arriving}, {tilts, moments}};
+    if (desc.parts.take(BakeStage::gather, probe,
+                        {asWritableBytes(ends), asWritableBytes(straight), asWritableBytes(arriving), asWritableBytes(moments)}))
+    {
+        for (const Array& array : arrays)
+            if (auto status =
+                    array.values.empty() ? success() : gpu->upload(array.buffer, probe * count * sizeof(vec4), asBytes(array.values));
+                !status)
+                return status;
+        return success();
+    }
+    if (auto status = dispatch(gatherPass, true, pushFor(probe, desc.rays), "surface gather", &first); !status) return status;
+    if (auto status = gpu->download(linkBuffer, 0, std::as_writable_bytes(ends)); !status) return status;
+    for (const Array& array : arrays)
+        if (auto status = array.values.empty()
+                              ? success()
+                              : gpu->download(array.buffer, probe * count * sizeof(vec4), std::as_writable_bytes(array.values));
+            !status)
+            return status;
+    return desc.parts.keep(BakeStage::gather, probe, {asBytes(ends), asBytes(straight), asBytes(arriving), asBytes(moments)});
+}
+
 Status SurfaceBaker::gather(uint32_t probe)
 {
-    if (desc.triangles) return gatherTriangles(probe);
-    if (auto status = dispatch(gatherPass, true, pushFor(probe, desc.rays), "surface gather", &first); !status) return status;
-    const size_t count = texelsOfProbe() * desc.rays;
-    return gpu->download(linkBuffer, 0, std::as_writable_bytes(std::span(links).subspan(probe * count, count)));
+    return desc.triangles ? gatherTriangles(probe) : gatherThroughField(probe);
 }
 
 /// A probe's links, to the buffer that holds one probe's.

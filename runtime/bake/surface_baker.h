@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bake/bake_parts.h"
 #include "runtime/bake/hidden_surfaces.h"
 #include "runtime/bake/lamps.h"
 #include "runtime/bake/refined_texels.h"
@@ -40,6 +41,7 @@ public:
         float offset = 0.0f;                       // field units that rays through the field start off their surface
         const TriangleGather* triangles = nullptr; // gathers in their place, by as many rays
         bool live = false;                         // transport() will be asked for; with triangles
+        BakeParts parts = {};                      // where gathered light is looked for and kept
     };
     /// @param field   with distances, octree and surfaceSize; it is only read
     /// @param texels  of all probes, [probe][6 surfaceSize^2]
@@ -48,6 +50,8 @@ public:
 
     /// A probe's texels: their light straight from emitters and sky, and where their rays end. All probes before the first bounce.
     Status gather(uint32_t probe);
+    /// With triangles, where the rays of cells in the open end: before light is read.
+    Status findCells();
     /// One bounce at all texels; the first call makes the light without one.
     Status bounce();
     /// Mean over probes and directions of the radiance, luminance (Rec. 709), that the texels send after the last bounce; before the first,
@@ -78,6 +82,7 @@ private:
     gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
     Status findTilts();
     Status gatherTriangles(uint32_t probe);
+    Status gatherThroughField(uint32_t probe);
     Status upload(uint32_t probe);
     bool directions() const { return field.info().surfaceDirections != 0; }
     size_t words() const { return surfaceTexelWords(field.info()) + cellWords(field.info()); }

@@ -1,6 +1,11 @@
 #include "base/safe_file.h"
 
+#include <csignal>
+
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 
@@ -72,6 +77,30 @@ TEST(SafeFile, ReplacesALinkAndNotWhatItPointsTo)
     ASSERT_TRUE(writeText(folder / "link", "text"));
     EXPECT_EQ(readText(folder / "link"), "text");
     EXPECT_EQ(readText(folder / "target"), "kept");
+}
+
+// A file that may grow no further stands for a full disk: writes come back short, then fail.
+TEST(SafeFile, AFullDiskLeavesWhatWasThereAndNothingElse)
+{
+    const TestFolder folder;
+    ASSERT_TRUE(writeText(folder / "a.txt", "old"));
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{1000, 1000};
+        if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(9);
+        if (!writeText(folder / "a.txt", "newer")) _exit(1);
+        const Status full = writeText(folder / "a.txt", std::string(5000, 'x'));
+        if (full || full.error().code != ErrorCode::fileError) _exit(2);
+        _exit(full.error().message.find("what stood there before is unchanged") == std::string::npos ? 3 : 0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+    EXPECT_EQ(readText(folder / "a.txt"), "newer");
+    EXPECT_EQ(filesIn(folder), 1u) << "a temporary file was left";
 }
 
 } // namespace

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "tools/frame_pictures.h"
-#include "tools/view/bake_job.h"
+#include "tools/view/background_bake.h"
 #include "tools/view/live_reference.h"
 #include "tools/view/panel.h"
 #include "tools/view/walk.h"
@@ -126,12 +126,12 @@ Error Viewer::at(const ScriptStep& step, const Error& error) const
 /// Places and bakes with every default, while the window shows how far it is.
 Status Viewer::bake()
 {
-    BakeJob job(desc.scene, desc.device);
+    BackgroundBake job(desc.scene, desc.device);
     const Progress progress = consoleProgress(context);
     while (!job.state().finished)
     {
         window->wait(0.1);
-        const BakeJob::State now = job.state();
+        const BackgroundBake::State now = job.state();
         if (closing()) return interrupted() ? Status(kInterrupted) : success();
         if (now.stage.empty()) continue;
         progress(now.stage, std::min(now.done, 0.999));

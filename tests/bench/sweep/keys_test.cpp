@@ -1,11 +1,9 @@
 #include "bench/sweep/keys.h"
 
-#include <cstdio>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "base/commit_mark.h"
 #include "bench/sweep/settings.h"
 #include "scene/builtin_scenes.h"
 #include "tests/support/files.h"
@@ -46,50 +44,6 @@ TEST(Keys, AnyByteOfAFileCounts)
     const auto missing = keyOfFile(folder / "none");
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().code, ErrorCode::fileError);
-}
-
-// The program that runs this test is such a build: its key is that of its file but for the commit.
-TEST(Keys, TheKeyOfABuildIsThatOfItsProgramWithoutItsCommit)
-{
-    const auto build = keyOfThisBuild();
-    ASSERT_TRUE(build) << build.error().message;
-    const std::string program = testing_support::readText(std::filesystem::read_symlink("/proc/self/exe"));
-    char key[17];
-    std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(keyWithoutCommit(program)));
-    EXPECT_EQ(*build, key);
-
-    const std::string mark(kCommitMark), rest(1000, 'x');
-    const uint64_t one = keyWithoutCommit(rest + mark + "0123456789ab    " + rest);
-    EXPECT_EQ(keyWithoutCommit(rest + mark + "ba9876543210+   " + rest), one) << "another commit";
-    EXPECT_NE(keyWithoutCommit(rest + mark + "0123456789ab    y" + rest.substr(1)), one) << "another program";
-    EXPECT_NE(keyWithoutCommit(rest.substr(1) + "y" + mark + "0123456789ab    " + rest), one);
-    EXPECT_NO_FATAL_FAILURE(keyWithoutCommit(mark + "01")) << "cut off behind the mark";
-}
-
-TEST(Keys, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)
-{
-    const auto scene = makeBuiltinScene("cornell");
-    ASSERT_TRUE(scene);
-    Scene renamed = *scene, moved = *scene, painted = *scene, lit = *scene;
-    renamed.name = "another";
-    moved.positions[0].x += 1e-6f;
-    painted.materials[0].roughness += 1e-6f;
-    lit.sky.x += 1e-6f;
-    Scene oneSided = *scene, doubled = *scene;
-    oneSided.twoSided = !oneSided.twoSided;
-    doubled.materials[0].doubleSided = !doubled.materials[0].doubleSided;
-    const std::string key = keyOf(*scene);
-    EXPECT_EQ(keyOf(renamed), key);
-    EXPECT_NE(keyOf(moved), key);
-    EXPECT_NE(keyOf(painted), key);
-    EXPECT_NE(keyOf(lit), key);
-    EXPECT_NE(keyOf(oneSided), key);
-    EXPECT_NE(keyOf(doubled), key);
-    Scene glass = *scene, bumped = *scene, flatter = *scene;
-    glass.materials[0].blended = true;
-    bumped.materials[0].normalTexture.image = 0;
-    flatter.materials[0].normalStrength = 0.5f;
-    for (const Scene* other : {&glass, &bumped, &flatter}) EXPECT_NE(keyOf(*other), key);
 }
 
 TEST(Keys, TellScenesAndSettingsApart)

@@ -16,8 +16,8 @@ using nlohmann::json;
 namespace
 {
 
-const std::vector<std::string> kCommands = {"scenes",  "doctor", "check",     "place",   "bake",  "info", "verify", "render",
-                                            "relight", "trace",  "reference", "compare", "bench", "tune", "knobs",  "view"};
+const std::vector<std::string> kCommands = {"scenes", "doctor",  "check", "place",     "bake",    "info",  "verify", "render", "relight",
+                                            "merge",  "capture", "trace", "reference", "compare", "bench", "tune",   "knobs",  "view"};
 
 /// stdout as JSON; a failure prints everything there was.
 json jsonOf(const CommandResult& result)

@@ -15,14 +15,14 @@ namespace sconce::tools
 
 /// Places probes and bakes their light field with every default of `place` and `bake`, in a thread and on a device of its own, so that a
 /// window answers meanwhile.
-class BakeJob
+class BackgroundBake
 {
 public:
     /// @param scene  outlives this. @param device  as OwnDevice::Desc
-    BakeJob(const Scene& scene, std::string device);
-    ~BakeJob(); // cancels and waits
-    BakeJob(const BakeJob&) = delete;
-    BakeJob& operator=(const BakeJob&) = delete;
+    BackgroundBake(const Scene& scene, std::string device);
+    ~BackgroundBake(); // cancels and waits
+    BackgroundBake(const BackgroundBake&) = delete;
+    BackgroundBake& operator=(const BackgroundBake&) = delete;
 
     struct State
     {

@@ -1,4 +1,4 @@
-#include "tools/view/bake_job.h"
+#include "tools/view/background_bake.h"
 
 #include "placement/place.h"
 #include "runtime/bake/bake.h"
@@ -10,7 +10,7 @@
 namespace sconce::tools
 {
 
-BakeJob::BakeJob(const Scene& scene, std::string device)
+BackgroundBake::BackgroundBake(const Scene& scene, std::string device)
 {
     thread = std::thread(
         [this, &scene, device = std::move(device)]
@@ -22,7 +22,7 @@ BakeJob::BakeJob(const Scene& scene, std::string device)
         });
 }
 
-BakeJob::~BakeJob()
+BackgroundBake::~BackgroundBake()
 {
     {
         std::scoped_lock lock(mutex);
@@ -31,19 +31,19 @@ BakeJob::~BakeJob()
     thread.join();
 }
 
-BakeJob::State BakeJob::state() const
+BackgroundBake::State BackgroundBake::state() const
 {
     std::scoped_lock lock(mutex);
     return now;
 }
 
-Result<FieldData> BakeJob::take()
+Result<FieldData> BackgroundBake::take()
 {
     std::scoped_lock lock(mutex);
     return std::move(*made);
 }
 
-bool BakeJob::report(std::string_view stage, double done)
+bool BackgroundBake::report(std::string_view stage, double done)
 {
     std::scoped_lock lock(mutex);
     now.stage = stage;
@@ -51,7 +51,7 @@ bool BakeJob::report(std::string_view stage, double done)
     return !cancelled;
 }
 
-Result<FieldData> BakeJob::work(const Scene& scene, const std::string& device)
+Result<FieldData> BackgroundBake::work(const Scene& scene, const std::string& device)
 {
     const Progress progress = [this](std::string_view stage, double done) { return report(stage, done); };
     PlaceReport placed;
