@@ -2,6 +2,7 @@
 #include "shared/octree_build.h"
 #include "shared/texel.h"
 #include "shared/chart.h"
+#include "shared/face_chain.h"
 
 layout(scalar, push_constant) uniform Push { OctreePush push; };
 

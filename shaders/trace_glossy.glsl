@@ -14,46 +14,51 @@ layout(set = 1, binding = kTraceCountsBinding, rgba32ui) writeonly uniform uimag
 shared uint chosenCount;
 shared uint chosen[64u << kEveryLog]; // x | y << 16
 
-void trace(ivec2 at, Pixel p, uint terms)
+/// A ray of a pixel, and what its light counts; all 0 where it would go below the surface.
+struct Sample
 {
-    vec4 result = vec4(0.0);
+    vec3 direction; // world, unit
+    vec3 weight;
+};
+
+Sample sampleOf(ivec2 at, Pixel p, TangentFrame tangents, uint ray)
+{
     if (kTerm == kTermDiffuse)
-    {
-        TangentFrame frameOf = tangentFrame(p.normal);
-        for (uint i = 0u; i < frame.glossyRays; ++i)
-        {
-            vec3 direction = toWorld(frameOf, sampleCosine(randomPair(uvec2(at), i, 4u, frame.seed)));
-            RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, normalize(direction), p.normal);
-            result += vec4(hit.radiance, hit.t);
-        }
-        imageStore(reflected, at, result / float(frame.glossyRays));
-        return;
-    }
-    uvec4 count = uvec4(kNoProbe, 0u, 0u, 0u); // probe, hand-offs, distance + index reads, unknown rays
-    TangentFrame tangents = tangentFrame(p.normal);
+        return Sample(normalize(toWorld(tangents, sampleCosine(randomPair(uvec2(at), ray, 4u, frame.seed)))), vec3(1.0));
     vec3 view = toTangent(tangents, p.view);
     view.z = max(view.z, 1e-4); // a shading normal may turn away from the eye
     const bool mirror = kTerm == kTermMirror;
     float alpha = ggxAlpha(p.brdf.roughness);
     BrdfLobes lobes = lobesAt(p.brdf, view.z);
-    uint rays = mirror ? 1u : frame.glossyRays;
+    vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), alpha, randomPair(uvec2(at), ray, 0u, frame.seed));
+    vec3 direction = reflect(-view, halfway);
+    if (direction.z <= 0.0) return Sample(vec3(0.0), vec3(0.0));
+    vec3 color = lobes.atNormal + lobes.atEdge * schlick(dot(view, halfway));
+    // weight of a visible-normal sample: colour G2 / G1 (Heitz 2018)
+    float weight = mirror ? 1.0 : 4.0 * view.z * direction.z * smithVisibility(direction.z, view.z, alpha) / max(smithMasking(view.z, alpha), 1e-6);
+    return Sample(normalize(toWorld(tangents, direction)), color * weight);
+}
+
+void trace(ivec2 at, Pixel p, uint terms)
+{
+    vec4 result = vec4(0.0);
+    uvec4 count = uvec4(kNoProbe, 0u, 0u, 0u); // probe, hand-offs, distance + index reads, unknown rays
+    TangentFrame tangents = tangentFrame(p.normal);
+    uint rays = kTerm == kTermMirror ? 1u : frame.glossyRays;
     for (uint i = 0u; i < rays; ++i)
     {
-        vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), alpha, randomPair(uvec2(at), i, 0u, frame.seed));
-        vec3 direction = reflect(-view, halfway);
-        if (direction.z <= 0.0) continue; // below the surface: no light
-        vec3 color = lobes.atNormal + lobes.atEdge * schlick(dot(view, halfway));
-        // weight of a visible-normal sample: colour G2 / G1 (Heitz 2018)
-        float weight = mirror ? 1.0 : 4.0 * view.z * direction.z * smithVisibility(direction.z, view.z, alpha) / max(smithMasking(view.z, alpha), 1e-6);
-        RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, normalize(toWorld(tangents, direction)), p.normal);
-        result += vec4(color * weight * hit.radiance, hit.t);
+        Sample s = sampleOf(at, p, tangents, i);
+        if (s.direction == vec3(0.0)) continue;
+        // The one place that asks: compilers write the whole tracer out for each.
+        RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, s.direction, p.normal);
+        result += vec4(s.weight * hit.radiance, hit.t);
         count.x = hit.probe;
         count.y += uint(hit.handoffs);
         count.z += uint(hit.distanceReads + hit.indexReads);
         count.w += hit.status == kUnknown ? 1u : 0u;
     }
     imageStore(reflected, at, result / float(rays));
-    if (kCount && (terms & (1u << kTerm)) != 0u) imageStore(counts, at, count);
+    if (kTerm != kTermDiffuse && kCount && (terms & (1u << kTerm)) != 0u) imageStore(counts, at, count);
 }
 
 void traceChosen()

@@ -83,7 +83,11 @@ void rankBlock(Text& text, ivec3 block, std::vector<uvec2>& lists)
     const size_t first = size_t(text.regionOf(gpu::kBlock * block)) * build.candidates;
     text.kept.clear();
     for (size_t i = first; i < first + build.candidates; ++i)
-        if (text.mayBeSeen(text.plan.candidates[i].x, block)) text.kept.push_back(text.plan.candidates[i]);
+    {
+        const glm::uvec2 candidate = text.plan.candidates[i];
+        const int sight = text.sightOf(candidate.x, block);
+        if (sight != Text::kSightNone) text.kept.push_back(candidate | uvec2(sight == Text::kSightAll ? Text::kSeesAll : 0u, 0u));
+    }
     const ivec3 low = gpu::kBlock * block, high = glm::min(low + gpu::kBlock, ivec3(build.count));
     for (int z = low.z; z < high.z; ++z)
         for (int y = low.y; y < high.y; ++y)

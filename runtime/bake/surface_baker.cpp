@@ -61,12 +61,18 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     }
     const VkDescriptorSetLayout sets[] = {field.layout(), scene->layout()};
     const auto constants = shaderConstants(field);
-    for (const auto& [pipeline, code, setCount] : {std::tuple<Pipeline*, Spirv, size_t>{&gatherPass, surface_gather_comp, 2},
-                                                   {&cellPass, cell_gather_comp, 2},
-                                                   {&bouncePass, surface_bounce_comp, 1},
-                                                   {&tiltPass, surface_tilt_comp, 1},
-                                                   {&filterPass, surface_filter_comp, 1}})
+    struct Pass
     {
+        Pipeline* pipeline;
+        Spirv code;
+        size_t sets;
+        bool ofFieldRays = false;
+    };
+    for (const auto& [pipeline, code, setCount, ofFieldRays] :
+         {Pass{&gatherPass, surface_gather_comp, 2, true}, Pass{&cellPass, cell_gather_comp, 2, true},
+          Pass{&bouncePass, surface_bounce_comp, 1}, Pass{&tiltPass, surface_tilt_comp, 1}, Pass{&filterPass, surface_filter_comp, 1}})
+    {
+        if (ofFieldRays && desc.triangles) continue; // two of the largest there are, and never run
         auto made = Pipeline::compute(*gpu, code, std::span(sets).first(setCount), sizeof(gpu::SurfacePush), constants);
         if (!made) return made.error();
         *pipeline = std::move(*made);

@@ -1,6 +1,6 @@
 // Which probes a voxel lists: the judging and ranking that builds the octree. Shared text: GLSL, or C++ inside a struct that names `real`,
 // holds `build` (OctreeBuild) and defines uint distanceWord(uint), vec3 probeCentre(uint), uint surfelKey(uint),
-// uint candidateCount() and uvec2 candidateOf(uint) (those of the voxel's block: of its region, those that mayBeSeen leaves, in order) and
+// uint candidateCount() and uvec2 candidateOf(uint) (those of the voxel's block: of its region, those that sightOf leaves, in order, with kSeesAll) and
 // uvec2 listOf(ivec3 node, ivec3 size): a list of the level read, which has `size` nodes.
 //
 // The same bytes on every device: only sums, products, comparisons and integers, each rounded once (SCONCE_EXACT), and no division, root
@@ -125,11 +125,17 @@ SCONCE_FN uint regionOf(ivec3 voxel)
         uint(build.regions.x) * (uint(voxel.y >> build.regionShift) + uint(build.regions.y) * uint(voxel.z >> build.regionShift));
 }
 
-/// False only when a probe sees nothing of a block of voxels (and half a voxel around it): its nearest point lies behind the farthest surface
-/// of all texels that it covers, by the minima of the chain. It saves time and changes no list.
-SCONCE_FN bool mayBeSeen(uint probe, ivec3 block)
+// What a probe's chain tells of a block of voxels (and half a voxel around it) at once. It saves time and changes no list.
+SCONCE_CONST int kSightUnsure = 0;
+SCONCE_CONST int kSightNone = 1; // it sees nothing there
+SCONCE_CONST int kSightAll = 2;  // nothing is before any point there
+SCONCE_CONST uint kSeesAll = 0x80000000u; // of a candidate's probe: kSightAll of the block
+
+/// By the cells of the chain that the block covers: its nearest point lies behind the far bounds of all, or its farthest before the near bounds.
+SCONCE_FN int sightOf(uint probe, ivec3 block)
 {
     real nearest = real(0.0); // largest q of the block
+    real farthest = real(1e30);
     vec2 low = vec2(real(build.faceSize), real(build.faceSize));
     vec2 high = vec2(real(0.0), real(0.0));
     int face = -1;
@@ -138,33 +144,41 @@ SCONCE_FN bool mayBeSeen(uint probe, ivec3 block)
         vec3 at = vec3(kBlock * block) - real(0.5) + real(kBlock + 1) * vec3(real(corner & 1), real((corner >> 1) & 1), real(corner >> 2));
         vec3 p = vec3(build.low) + build.voxel * at - probeCentre(probe);
         int own = dominantFace(p);
-        if (corner > 0 && own != face) return true;
+        if (corner > 0 && own != face) return kSightUnsure;
         face = own;
         vec3 f = faceCoordinates(face, p);
-        if (!(f.z > real(1e-6))) return true;
+        if (!(f.z > real(1e-6))) return kSightUnsure;
         real q = reciprocal(f.z);
         vec2 pixel = vec2(real(0.5) * real(build.faceSize) * (f.x * q + real(1.0)), real(0.5) * real(build.faceSize) * (f.y * q + real(1.0)));
         nearest = max(nearest, q);
+        farthest = min(farthest, q);
         low = min(low, pixel);
         high = max(high, pixel);
     }
     int last = int(build.faceSize) - 1;
     ivec2 first = ivec2(clamp(int(low.x - real(0.5)), 0, last), clamp(int(low.y - real(0.5)), 0, last));
     ivec2 end = ivec2(clamp(int(high.x + real(0.5)), 0, last), clamp(int(high.y + real(0.5)), 0, last));
-    uint level = 2u;
-    uint offset = build.faceSize * build.faceSize;
-    while (level < build.topLevel && max((end.x >> level) - (first.x >> level), (end.y >> level) - (first.y >> level)) > 3)
-    {
-        offset += (build.faceSize >> level) * (build.faceSize >> level);
-        level += 2u;
-    }
-    if (level > build.topLevel) return true; // the faces are too small for a chain
-    uint farthest = 0xffffu; // halves of one sign order as integers
+    int level = 2;
+    while (level < int(build.topLevel) && max((end.x >> level) - (first.x >> level), (end.y >> level) - (first.y >> level)) > 3) level += 2;
+    if (level > int(build.topLevel)) return kSightUnsure; // the faces are too small for a chain
+    uint ofFace = probe * build.wordsPerProbe + uint(face) * (build.wordsPerProbe / 6u);
+    uint ofLevel = chainOffset(build.faceSize, level);
+    uint ofBounds = ofFace + chainNearWords(build.faceSize, int(build.topLevel));
+    real nearBound = real(0.0);
+    real farBound = real(1e30);
     for (int y = first.y >> level; y <= end.y >> level; ++y)
         for (int x = first.x >> level; x <= end.x >> level; ++x)
-            farthest = min(farthest, distanceWord(probe * build.wordsPerProbe + uint(face) * (build.wordsPerProbe / 6u) + offset +
-                uint(y) * (build.faceSize >> level) + uint(x)) >> 16);
-    return nearest >= halfToReal(farthest) * (real(0.999) - build.slack);
+        {
+            uint cell = ofLevel + uint(y) * chainWidth(build.faceSize, level) + uint(x);
+            uint plane = distanceWord(ofFace + cell);
+            real spread = real(0.5) * real(1 << level) * (abs(exactGradient(plane >> 16)) + abs(exactGradient(plane >> 24)));
+            nearBound = max(nearBound, halfToReal(plane) * (real(1.0) + spread));
+            uint ofChain = cell - build.faceSize * build.faceSize;
+            farBound = min(farBound, farBoundIn(distanceWord(ofBounds + ofChain / 2u), ofChain));
+        }
+    // A thousandth for the roundings of both sides, which other lengths stand behind.
+    if (nearest < farBound * (real(0.999) - build.slack)) return kSightNone;
+    return farthest >= nearBound * (real(1.001) - build.slack) ? kSightAll : kSightUnsure;
 }
 
 /// A voxel's list: up to four probes, 16 bits each, best first, 0xffff where there is none. Each rank goes to the candidate that sees most,
@@ -200,8 +214,10 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
     for (uint c = 0u; c < candidates && found < kMostSeeing && whole < kRanked; ++c)
     {
         uvec2 candidate = candidateOf(c);
-        uint bits = 0u;
-        for (int sample_ = 0; sample_ < kFreeSamples; ++sample_)
+        bool seesAll = (candidate.x & kSeesAll) != 0u;
+        candidate.x &= ~kSeesAll;
+        uint bits = seesAll ? (1u << kFreeSamples) - 1u : 0u;
+        for (int sample_ = 0; sample_ < kFreeSamples && !seesAll; ++sample_)
         {
             vec3 corner = vec3((sample_ & 1) != 0 ? real(1.0) : real(-1.0), (sample_ & 2) != 0 ? real(1.0) : real(-1.0),
                 (sample_ & 4) != 0 ? real(1.0) : real(-1.0));
@@ -215,7 +231,7 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
             SCONCE_EXACT vec3 to = probeCentre(candidate.x) - surfaces[i];
             vec3 n = normals[i];
             SCONCE_EXACT real height = to.x * n.x + to.y * n.y + to.z * n.z;
-            if (height > real(0.0) && probeSees(candidate.x, surfaces[i])) bits |= 1u << (uint(kFreeSamples) + i);
+            if (height > real(0.0) && (seesAll || probeSees(candidate.x, surfaces[i]))) bits |= 1u << (uint(kFreeSamples) + i);
         }
         if (bits == 0u) continue;
         seenBits[found] = bits;

@@ -17,6 +17,31 @@ namespace
 using glm::vec3;
 using testing_support::dividedBox;
 
+namespace rank_text
+{
+using namespace glm;
+/// The text that ranks, to ask of it what it leaves out.
+struct Text
+{
+    using real = float;
+    using uint = uint32_t;
+    using vec2f = glm::vec2;
+    static constexpr uint kNoSurfel = gpu::kNoSurfel, kNoList = gpu::kNoList, kSurfelSlots = gpu::kSurfelSlots;
+    static constexpr int kRanked = gpu::kRanked, kBlock = gpu::kBlock;
+    const gpu::OctreeBuild& build;
+    const FieldData& field;
+    uint distanceWord(uint index) const { return field.distance[index]; }
+    vec3 probeCentre(uint probe) const { return field.probes[probe].centre; }
+    uint candidateCount() const { return 0; }
+    uvec2 candidateOf(uint) const { return {}; }
+    uint surfelKey(uint) const { return kNoSurfel; }
+    uvec2 listOf(ivec3, ivec3) const { return {}; }
+#include "shaders/shared/pure_text.h"
+
+#include "shaders/shared/octree_rank.h"
+};
+} // namespace rank_text
+
 vec3 toField(const FieldData& field, vec3 world)
 {
     return (world - field.info.origin) / field.info.scale;
@@ -56,6 +81,37 @@ TEST(BuildOctree, EveryPointHasALeafEvenOutsideAndNotANumber)
     }
     int reads = 0;
     EXPECT_EQ(text.rankedProbesAt(vec3(50.0f, 0.1f, 0.0f), reads).x, 1u) << "a point outside asks the nearest leaf";
+}
+
+// Blocks that a probe's chain answers for: each of many points in them is answered alike by the map.
+TEST(BuildOctree, WhatAChainTellsOfABlockIsSoOfItsPoints)
+{
+    for (const uint32_t faces : {52u, 64u, 128u}) // of 52 the coarsest cells reach over the border
+    {
+        const FieldData field = dividedBox(faces);
+        const auto plan = planOctree({field.info, field.probes, field.distance}, {.voxels = 64});
+        ASSERT_TRUE(plan);
+        const gpu::OctreeBuild& build = plan->build;
+        const rank_text::Text text{build, field};
+        std::mt19937 random(11);
+        std::uniform_real_distribution<float> within(-0.5f, float(gpu::kBlock) + 0.5f);
+        const glm::ivec3 blocks = (build.count + gpu::kBlock - 1) / gpu::kBlock;
+        int answered[3] = {};
+        for (int i = 0; i < blocks.x * blocks.y * blocks.z; ++i)
+            for (uint32_t probe = 0; probe < 2; ++probe)
+            {
+                const glm::ivec3 block(i % blocks.x, i / blocks.x % blocks.y, i / blocks.x / blocks.y);
+                const int sight = text.sightOf(probe, block);
+                ++answered[sight];
+                for (int point = 0; point < 40 && sight != text.kSightUnsure; ++point)
+                {
+                    const vec3 at = vec3(gpu::kBlock * block) + vec3(within(random), within(random), within(random));
+                    ASSERT_EQ(text.probeSees(probe, build.low + build.voxel * at), sight == text.kSightAll) << faces << ", block " << i;
+                }
+            }
+        for (const int sight : {text.kSightNone, text.kSightAll})
+            EXPECT_GT(answered[sight], answered[text.kSightUnsure]) << faces << ": most of them it knows";
+    }
 }
 
 TEST(BuildOctree, DescentEqualsTheUncollapsedVoxels)

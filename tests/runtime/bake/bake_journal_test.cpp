@@ -225,11 +225,13 @@ TEST(BakeJournal, AKilledWriterLosesNothingOfWhatItKept)
                 if (write(ends[1], &i, sizeof i) != sizeof i) _exit(1);
             }
         }
+        close(ends[1]);
+        // Some records are kept however busy the machine is; the kill comes at any moment of the next.
+        uint32_t kept = before;
+        for (uint32_t i = 0, least = 1 + random() % 3; least > 0 && read(ends[0], &i, sizeof i) == ssize_t(sizeof i); --least) kept = i + 1;
         usleep(useconds_t(random() % 3000));
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
-        close(ends[1]);
-        uint32_t kept = before;
         for (uint32_t i = 0; read(ends[0], &i, sizeof i) == ssize_t(sizeof i);) kept = i + 1;
         close(ends[0]);
         const JournalFile journal = opened(folder / "j");
@@ -238,7 +240,7 @@ TEST(BakeJournal, AKilledWriterLosesNothingOfWhatItKept)
         for (uint32_t i = 0; i < journal.records(); ++i) ASSERT_EQ(journal.find(part(i)), bytes(std::string(3000, char('a' + i % 26))));
         before = uint32_t(journal.records());
     }
-    EXPECT_GT(before, 0u);
+    EXPECT_GE(before, 40u);
 }
 
 TEST(BakeJournal, APartFileIsWholeOrRefused)
