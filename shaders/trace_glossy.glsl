@@ -1,6 +1,7 @@
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
 #include "sparse.glsl"
+#include "moving_shapes.glsl"
 
 // Light by traced rays, by SCONCE_QUERY: a query of the light field, which is included before. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray; kTermDiffuse: cosine-weighted rays, whose
 // mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel, or sparseRuns; of each 2^kEveryLog
@@ -8,11 +9,20 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
 layout(constant_id = kCountId) const bool kCount = true; // write the counts
+layout(constant_id = kMovingId) const bool kMoving = false; // rays meet shapes that move
 layout(set = 1, binding = kTraceLightBinding, rgba32f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
 layout(set = 1, binding = kTraceCountsBinding, rgba32ui) writeonly uniform uimage2D counts;  // probe of the last ray, hand-offs, reads, unknown rays
 
 shared uint chosenCount;
 shared uint chosen[64u << kEveryLog]; // x | y << 16
+
+RayHit queryAll(Pixel p, vec3 direction)
+{
+    vec3 origin = p.position + frame.normalOffset * p.normal;
+    RayHit hit = SCONCE_QUERY(origin, direction, p.normal);
+    if (kMoving) meetShapes(origin, direction, p.normal, hit);
+    return hit;
+}
 
 void trace(ivec2 at, Pixel p, uint terms)
 {
@@ -23,7 +33,7 @@ void trace(ivec2 at, Pixel p, uint terms)
         for (uint i = 0u; i < frame.glossyRays; ++i)
         {
             vec3 direction = toWorld(frameOf, sampleCosine(randomPair(uvec2(at), i, 4u, frame.seed)));
-            RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, normalize(direction), p.normal);
+            RayHit hit = queryAll(p, normalize(direction));
             result += vec4(hit.radiance, hit.t);
         }
         imageStore(reflected, at, result / float(frame.glossyRays));
@@ -45,7 +55,7 @@ void trace(ivec2 at, Pixel p, uint terms)
         vec3 color = lobes.atNormal + lobes.atEdge * schlick(dot(view, halfway));
         // weight of a visible-normal sample: colour G2 / G1 (Heitz 2018)
         float weight = mirror ? 1.0 : 4.0 * view.z * direction.z * smithVisibility(direction.z, view.z, alpha) / max(smithMasking(view.z, alpha), 1e-6);
-        RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, normalize(toWorld(tangents, direction)), p.normal);
+        RayHit hit = queryAll(p, normalize(toWorld(tangents, direction)));
         result += vec4(color * weight * hit.radiance, hit.t);
         count.x = hit.probe;
         count.y += uint(hit.handoffs);
