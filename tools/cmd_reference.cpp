@@ -99,7 +99,8 @@ struct CompareOptions
     std::string picture, reference, metrics = "mse,relmse,psnr,flip,mean", diff, sideBySide, layer = "beauty";
     std::vector<std::string> limits;
     std::optional<float> exposure;
-    bool sameSurface = false;
+    bool sameSurface = false, newSurface = false;
+    std::string before;
 };
 
 int runCompare(const CompareOptions& options, const Context& context)
@@ -138,6 +139,15 @@ int runCompare(const CompareOptions& options, const Context& context)
     if (!picture) return fail(picture.error());
     const Result<ImageSet> reference = readExr(options.reference);
     if (!reference) return fail(reference.error());
+    std::optional<ImageSet> before;
+    if (!options.before.empty())
+    {
+        Result<ImageSet> read = readExr(options.before);
+        if (!read) return fail(read.error());
+        before = std::move(*read);
+        settings.before = &*before;
+        settings.newSurface = options.newSurface;
+    }
     const Result<CompareResult> result = compareImages(*picture, *reference, settings);
     if (!result) return fail(result.error());
     if (!options.diff.empty())
