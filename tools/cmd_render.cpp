@@ -39,6 +39,7 @@ struct RenderOptions : FrameChoice
     PictureOptions pictures;
     std::string field, tracer = "ours", device;
     MovingShapeOptions shapes;
+    bool drawnOnly = false;
     QualityOption quality;
     std::vector<std::string> groups, dims;
     std::string sunPath;
@@ -320,7 +321,7 @@ int runRender(RenderOptions options, const Context& context)
     RenderSettings settings = std::move(*chosen);
     settings.width = options.width;
     settings.height = options.height;
-    settings.shapes = *shapes;
+    if (!options.drawnOnly) settings.shapes = *shapes;
     addShapes(*scene, *shapes); // after the plan: they call for nothing
 
     // After everything that can be refused without a device, which takes longer to start than all of that together.
@@ -390,6 +391,7 @@ int runRender(RenderOptions options, const Context& context)
     json["frames"] = options.frames;
     json["dim"] = options.dims;
     json["shapes"] = options.shapes.file;
+    json["drawn_only"] = options.drawnOnly;
     if (groupsMs) json["light_groups_ms"] = *groupsMs;
     if (live)
     {
@@ -430,6 +432,10 @@ void addRenderCommand(CLI::App& app, Context& context)
     addFrameOptions(command, *options);
     addTracer(command, options->tracer);
     options->shapes.add(command);
+    command
+        ->add_flag("--drawn-only", options->drawnOnly,
+                   described("Draw the shapes, but don't tell indirect light of them: what they would cost and change", words("off")))
+        ->needs("--shapes");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
     addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
     addDims(command, options->dims, "; of a field's groups its light, too");
