@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
+
 #include "base/knobs.h"
 #include "base/progress.h"
 #include "base/result.h"
@@ -185,6 +187,28 @@ private:
     std::unique_ptr<State> owned;
 };
 
+/// What moves, as indirect light sees it: it hides light from what is about it, and rays meet it. The host draws it, with shadows of its
+/// own lights; a figure is some capsules, a door a box. Its surface is lit as whatever no probe knows, by the light in the open about it.
+/// World, metres.
+struct MovingShape
+{
+    enum class Kind : uint32_t
+    {
+        sphere,
+        capsule, // along its y
+        box
+    };
+    Kind kind = Kind::sphere;
+    vec3 centre{0.0f};
+    glm::quat turn{1.0f, 0.0f, 0.0f, 0.0f}; // its axes to the world's, unit
+    vec3 half{0.5f};     // box: from the middle to its faces; else x: radius, y: from the middle to the ends' centres; all above 0
+    vec3 albedo{0.5f};   // of light that it scatters, [0,1]: base colour, without metal
+    vec3 emission{0.0f}; // W/(m^2 sr), to all sides; what the host's own lights make of it may be added
+    float slack =
+        -1.0f; // how far what is drawn of it may lie off it: such a surface isn't hidden by it; below 0: kSlackOfShape of its size
+};
+inline constexpr float kSlackOfShape = 0.1f; // of the radius of the sphere about it
+
 /// Records one frame's indirect light into the host's command buffer. Made once for a size; recording never allocates, throws or submits.
 /// Move-only; it keeps its light field.
 class IndirectLight
@@ -197,6 +221,7 @@ public:
         uint32_t traceEvery = knobs::traceEvery.value; // trace one pixel of so many, of reflections and of traced diffuse light, and make
                                                        // the rest from it: shaders/reconstruct.comp. Mirrors are traced at every pixel
         bool counts = false;                           // write what each pixel's ray cost: an image of 16 bytes a pixel
+        uint32_t movingShapes = 0;                     // that move at a time, up to 256; 0: no pass, nor bytes, of them
     };
     /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL, to be sampled or read as a storage image; all null when the effect is off.
     struct Output
@@ -214,11 +239,16 @@ public:
 
     /// Binds the G-buffer; before the first record and whenever its views change. Not while the GPU runs a recorded frame.
     void setInputs(const FrameInputs& inputs);
+    /// What moves, from the next recorded frame on; none before the first call. With the effect `temporal`, FrameView::follows =
+    /// kFollowsChange while anything moves. Cost: of a pixel grows with the shapes within 16 times their size of its tile; a ray asks every
+    /// eighth shape at least.
+    /// Errors: badArgument (more than Desc::movingShapes, or the first shape that is none: named); what was set before stays.
+    Status setShapes(std::span<const MovingShape> shapes);
     /// Record frames in the order in which they are shown, where the effect `temporal` is on. The G-buffer must be visible to compute
     /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
     /// any later stage read these.
     /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace",
-    ///               "diffuse fill", "glossy fill", "glossy denoise", "lamp light"
+    ///               "diffuse fill", "glossy fill", "glossy denoise", "moving shapes", "lamp light"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; shaders/compose.comp shows

@@ -1,6 +1,7 @@
 #include "gbuffer_read.glsl"
 #include "tiles.glsl"
 #include "sparse.glsl"
+#include "moving_shapes.glsl"
 
 // Light by traced rays, by SCONCE_QUERY: a query of the light field, which is included before. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray; kTermDiffuse: cosine-weighted rays, whose
 // mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel, or sparseRuns; of each 2^kEveryLog
@@ -8,6 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
 layout(constant_id = kCountId) const bool kCount = true; // write the counts
+layout(constant_id = kMovingId) const bool kMoving = false; // rays meet shapes that move
 layout(set = 1, binding = kTraceLightBinding, rgba32f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
 layout(set = 1, binding = kTraceCountsBinding, rgba32ui) writeonly uniform uimage2D counts;  // probe of the last ray, hand-offs, reads, unknown rays
 
@@ -50,7 +52,9 @@ void trace(ivec2 at, Pixel p, uint terms)
         Sample s = sampleOf(at, p, tangents, i);
         if (s.direction == vec3(0.0)) continue;
         // The one place that asks: compilers write the whole tracer out for each.
-        RayHit hit = SCONCE_QUERY(p.position + frame.normalOffset * p.normal, s.direction, p.normal);
+        vec3 origin = p.position + frame.normalOffset * p.normal;
+        RayHit hit = SCONCE_QUERY(origin, s.direction, p.normal);
+        if (kMoving) meetShapes(origin, s.direction, p.normal, hit);
         result += vec4(s.weight * hit.radiance, hit.t);
         count.x = hit.probe;
         count.y += uint(hit.handoffs);

@@ -9,7 +9,9 @@
 #include "bench/reference/reference.h"
 #include "bench/sweep/kept_reference.h"
 #include "bench/sweep/keys.h"
+#include "runtime/scene/shape_meshes.h"
 #include "tools/light_group_options.h"
+#include "tools/moving_shape_options.h"
 #include "tools/pictures.h"
 
 namespace sconce::tools
@@ -30,6 +32,7 @@ struct ReferenceOptions
     ReferenceSettings settings;
     double until = knobs::pathsUntil.value;
     std::string keep;
+    MovingShapeOptions shapes;
     std::vector<std::string> groups, dims;
 };
 
@@ -56,8 +59,11 @@ int runReference(const ReferenceOptions& options, const Context& context)
         return fail(ErrorCode::badArgument, problem);
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
     if (!groups) return fail(groups.error());
+    const Result<std::vector<MovingShape>> shapes = options.shapes.read();
+    if (!shapes) return fail(shapes.error());
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
+    addShapes(*scene, *shapes);
     if (!groups->empty() || !options.dims.empty())
         if (const auto dimmed = dimScene(*scene, *groups, options.dims); !dimmed) return fail(dimmed.error());
     const Result<Camera> camera = options.camera.choose(*scene);
@@ -93,7 +99,8 @@ struct CompareOptions
     std::string picture, reference, metrics = "mse,relmse,psnr,flip,mean", diff, sideBySide, layer = "beauty";
     std::vector<std::string> limits;
     std::optional<float> exposure;
-    bool sameSurface = false;
+    bool sameSurface = false, newSurface = false;
+    std::string before;
 };
 
 int runCompare(const CompareOptions& options, const Context& context)
@@ -132,6 +139,15 @@ int runCompare(const CompareOptions& options, const Context& context)
     if (!picture) return fail(picture.error());
     const Result<ImageSet> reference = readExr(options.reference);
     if (!reference) return fail(reference.error());
+    std::optional<ImageSet> before;
+    if (!options.before.empty())
+    {
+        Result<ImageSet> read = readExr(options.before);
+        if (!read) return fail(read.error());
+        before = std::move(*read);
+        settings.before = &*before;
+        settings.newSurface = options.newSurface;
+    }
     const Result<CompareResult> result = compareImages(*picture, *reference, settings);
     if (!result) return fail(result.error());
     if (!options.diff.empty())
@@ -194,6 +210,7 @@ void addReferenceCommands(CLI::App& app, Context& context)
     addKnob(reference, "--seed", settings.seed, knobs::pathSeed);
     addSwitch(reference, "--pixel-centre", settings.pixelCentre, knobs::pixelCentre);
     addSwitch(reference, "--parts", settings.parts, knobs::parts);
+    options->shapes.add(reference);
     addGroups(reference, options->groups, "Lights for --dim");
     addDims(reference, options->dims);
     options->pictures.add(reference, kReferenceLayers);

@@ -13,6 +13,7 @@
 #include "runtime/field/live_light.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/scene_renderer.h"
+#include "runtime/scene/shape_meshes.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/scene_check.h"
 #include "tools/field_report.h"
@@ -21,6 +22,7 @@
 #include "tools/from_field.h"
 #include "tools/light_group_options.h"
 #include "tools/live_light_options.h"
+#include "tools/moving_shape_options.h"
 #include "tools/pictures.h"
 #include "tools/quality_option.h"
 
@@ -36,6 +38,8 @@ struct RenderOptions : FrameChoice
     CameraOptions camera;
     PictureOptions pictures;
     std::string field, tracer = "ours", device;
+    MovingShapeOptions shapes;
+    bool drawnOnly = false;
     QualityOption quality;
     std::vector<std::string> groups, dims;
     std::string sunPath;
@@ -274,6 +278,8 @@ int runRender(RenderOptions options, const Context& context)
         return fail(ErrorCode::badArgument, problem);
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
     if (!groups) return fail(groups.error());
+    const Result<std::vector<MovingShape>> shapes = options.shapes.read();
+    if (!shapes) return fail(shapes.error());
     Result<Scene> scene = options.scene.load(context);
     if (!scene) return fail(scene.error());
     const Result<Camera> camera = options.camera.choose(*scene);
@@ -315,6 +321,8 @@ int runRender(RenderOptions options, const Context& context)
     RenderSettings settings = std::move(*chosen);
     settings.width = options.width;
     settings.height = options.height;
+    if (!options.drawnOnly) settings.shapes = *shapes;
+    addShapes(*scene, *shapes); // after the plan: they call for nothing
 
     // After everything that can be refused without a device, which takes longer to start than all of that together.
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
@@ -382,6 +390,8 @@ int runRender(RenderOptions options, const Context& context)
     json["temporal"] = settings.effects.temporal;
     json["frames"] = options.frames;
     json["dim"] = options.dims;
+    json["shapes"] = options.shapes.file;
+    json["drawn_only"] = options.drawnOnly;
     if (groupsMs) json["light_groups_ms"] = *groupsMs;
     if (live)
     {
@@ -421,6 +431,11 @@ void addRenderCommand(CLI::App& app, Context& context)
     addSize(command, options->width, options->height);
     addFrameOptions(command, *options);
     addTracer(command, options->tracer);
+    options->shapes.add(command);
+    command
+        ->add_flag("--drawn-only", options->drawnOnly,
+                   described("Draw the shapes, but don't tell indirect light of them: what they would cost and change", words("off")))
+        ->needs("--shapes");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
     addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
     addDims(command, options->dims, "; of a field's groups its light, too");
@@ -453,7 +468,7 @@ void addRenderCommand(CLI::App& app, Context& context)
     options->quality.add(command);
     // What only geometry's pixels have.
     for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--no-denoise",
-                              "--temporal", "--roughness", "--sun-path"})
+                              "--temporal", "--roughness", "--sun-path", "--shapes"})
         fromField->excludes(command->get_option(other));
     onChosen(command, context, options, runRender);
 }

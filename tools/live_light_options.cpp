@@ -9,6 +9,7 @@
 #include "base/listed.h"
 #include "runtime/field/live_light.h"
 #include "tools/common.h"
+#include "tools/json_numbers.h"
 
 namespace sconce::tools
 {
@@ -39,33 +40,21 @@ std::string readLight(const Json& json, Light& light)
     light.type = LightType(type - std::begin(kTypes));
     for (const auto& [key, value] : json.items())
     {
-        const auto three = [&](vec3& to)
-        {
-            const bool right =
-                value.is_array() && value.size() == 3 && std::ranges::all_of(value, [](const Json& n) { return n.is_number(); });
-            if (right) to = vec3(value[0].get<float>(), value[1].get<float>(), value[2].get<float>());
-            return right;
-        };
-        const auto one = [&](float& to)
-        {
-            if (value.is_number()) to = value.get<float>();
-            return value.is_number();
-        };
         bool right = true;
         if (key == "name" && value.is_string())
             light.name = value.get<std::string>();
         else if (key == "position")
-            right = three(light.position);
+            right = readNumbers(value, light.position);
         else if (key == "direction")
-            right = three(light.direction);
+            right = readNumbers(value, light.direction);
         else if (key == "intensity")
-            right = three(light.intensity);
+            right = readNumbers(value, light.intensity);
         else if (key == "range")
-            right = one(light.range);
+            right = readNumber(value, light.range);
         else if (key == "inner_cone")
-            right = one(light.innerCone);
+            right = readNumber(value, light.innerCone);
         else if (key == "outer_cone")
-            right = one(light.outerCone);
+            right = readNumber(value, light.outerCone);
         else
             right = key == "type";
         if (!right) return fmt::format("its '{}' is unknown or not as it should be", key);

@@ -8,6 +8,7 @@
     bench/pages/response_table.sh                               bench/results/light_response.json
     bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
+    bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -356,6 +357,36 @@ def primaries(arguments):
            "cube faces of 208 and octahedral maps of 512 texels: equal memory; B0+ on our probes and on the fitted grid of as many"], rows)
 
 
+def moving(arguments):
+    """A scene's row: errors in the masks with the light told of what moves, over those without, and what telling costs."""
+    at, label, poses = arguments[0], arguments[1], int(arguments[2])
+    load = lambda end: json.loads(Path(f"{at}.{end}.json").read_text())
+    row = {"label": label}
+    for kind in ("figure", "door"):
+        names = [f"{kind}.{i}" for i in range(poses)]
+        for layer, mask in (("diffuse_indirect", "shadow"), ("glossy_indirect", "reflection"), ("beauty", "object")):
+            pairs = [(load(f"{name}.told.{layer}.error"), load(f"{name}.untold.{layer}.error")) for name in names]
+            pairs = [(told, untold) for told, untold in pairs if told and untold]
+            if not pairs:
+                continue
+            total = lambda side, key: sum(pair[side][key] for pair in pairs) / len(pairs)
+            row |= {f"{kind}_{mask}_mse_ratio": f"{total(0, 'mse') / total(1, 'mse'):.3f}", f"{kind}_{mask}_relmse": f"{total(0, 'relmse'):.4f}",
+                    f"{kind}_{mask}_relmse_untold": f"{total(1, 'relmse'):.4f}", f"{kind}_{mask}_mean": f"{total(0, 'mean'):.3f}",
+                    f"{kind}_{mask}_mean_untold": f"{total(1, 'mean'):.3f}", f"{kind}_{mask}_worst": f"{max(told['mse'] / untold['mse'] for told, untold in pairs):.2f}"}
+        frames = [(load(f"{name}.told"), load(f"{name}.untold")) for name in names]
+        row |= {f"{kind}_pass_ms": f"{sum(told['passes_ms'].get('moving shapes', 0.0) for told, _ in frames) / len(frames):.1f}",
+                f"{kind}_frame_ratio": f"{sum(told['frame_ms'] for told, _ in frames) / sum(untold['frame_ms'] for _, untold in frames):.3f}"}
+    print(f'  "{slug(label.split(",")[0])}": {json.dumps(row)},', flush=True)
+
+
+def movings(arguments):
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("moving_shapes.json", "A walking figure of ten shapes and a door, eight poses each, that the field doesn't know", ["bench/pages/moving_table.sh"],
+          ["masks by the reference with and without the shape: shadow and reflection: light of surfaces that stayed, where it changed by over a tenth; object: what shows it",
+           "mse_ratio: of the mean squared error with the light told of the shapes over that without, means over poses; worst: of one pose",
+           "pass: over diffuse light and rough reflections; frame_ratio: the whole frame's time, told over untold"], rows)
+
+
 def least_and_most(texts):
     numbers = sorted((float(text), text) for text in texts if text != "nan")
     return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
@@ -363,7 +394,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces,
-             "primary": primary, "primaries": primaries}
+             "primary": primary, "primaries": primaries, "moving": moving, "movings": movings}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -59,6 +59,28 @@ Result<std::vector<bool>> sameSurfaces(const ImageSet& a, const ImageSet& refere
     return same;
 }
 
+/// Which pixels count, by what has changed in the reference. Errors: badInput.
+Result<std::vector<bool>> changedPixels(const ImageSet& reference, const CompareSettings& settings)
+{
+    const Layer *const now = reference.find(settings.layer), *const then = settings.before->find(settings.layer);
+    if (!then || settings.before->width != reference.width || settings.before->height != reference.height ||
+        then->channels != now->channels)
+        return Error{ErrorCode::badInput,
+                     fmt::format("the picture before the change is {}x{} and {} layer '{}'; render it as the reference",
+                                 settings.before->width, settings.before->height, then ? "has another" : "has no", settings.layer)};
+    auto changed = sameSurfaces(*settings.before, reference);
+    if (!changed) return changed;
+    const std::vector<float> light = asRgb(*now), was = asRgb(*then);
+    const auto luminance = [](const std::vector<float>& rgb, size_t p)
+    { return 0.2126f * rgb[3 * p] + 0.7152f * rgb[3 * p + 1] + 0.0722f * rgb[3 * p + 2]; };
+    for (size_t p = 0; p < changed->size(); ++p)
+    {
+        const float a = luminance(light, p), b = luminance(was, p);
+        (*changed)[p] = settings.newSurface ? !(*changed)[p] : (*changed)[p] && std::abs(a - b) > kChanged * std::max(a, b);
+    }
+    return changed;
+}
+
 /// The values of the pixels that count.
 std::vector<float> judgedOnly(std::vector<float> rgb, const std::vector<bool>& judged)
 {
@@ -234,13 +256,23 @@ Result<CompareResult> compareImages(const ImageSet& a, const ImageSet& reference
         if (!same) return same.error();
         judged = std::move(*same);
     }
+    if (settings.before)
+    {
+        auto changed = changedPixels(reference, settings);
+        if (!changed) return changed.error();
+        if (std::ranges::count(*changed, true) == 0)
+            return Error{ErrorCode::badInput, "nothing has changed between the two references; compare all pixels"};
+        judged.resize(changed->size(), true);
+        for (size_t p = 0; p < judged.size(); ++p) judged[p] = judged[p] && (*changed)[p];
+    }
     CompareResult result;
     result.width = a.width;
     result.height = a.height;
     result.nonFinitePixels = nonFinitePixels(**layerA);
     result.otherSurfacePixels = uint64_t(std::ranges::count(judged, false));
     if (!judged.empty() && result.otherSurfacePixels == judged.size())
-        return Error{ErrorCode::badInput, "no pixel of the two pictures shows the same surface; render both with the same camera"};
+        return Error{ErrorCode::badInput,
+                     "no pixel of the two pictures shows the same surface that counts; render both with the same camera"};
     const std::vector<float> right = asRgb(**layerB);
     std::vector<float> left = asRgb(**layerA);
     for (size_t p = 0; p < judged.size(); ++p) // in maps of the error, which need their neighbours

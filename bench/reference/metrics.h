@@ -44,8 +44,11 @@ struct CompareSettings
     float pixelsPerDegree = 67.0f; // of FLIP
     bool sameSurface =
         false; // leaves out pixels in which the two see different surfaces: by their layer `depth`, more than kOtherSurface apart
+    const ImageSet* before = nullptr; // another reference, before something came or went: only pixels count in which that changed...
+    bool newSurface = false; // ... the layer's luminance, by over kChanged of the larger, on a surface that stayed; true: the surface
 };
 inline constexpr float kOtherSurface = 0.01f; // relative difference of depth
+inline constexpr float kChanged = 0.1f;
 
 struct CompareResult
 {
@@ -59,7 +62,7 @@ struct CompareResult
     std::optional<double> mean;         // over the reference's
     std::vector<float> errorMap;        // [height][width] in [0,1]: FLIP, or min(1, relative error) where FLIP was not asked for
     uint64_t nonFinitePixels = 0;       // of the compared picture; any makes the metrics NaN
-    uint64_t otherSurfacePixels = 0;    // left out, see CompareSettings::sameSurface; in maps they are as the reference's
+    uint64_t otherSurfacePixels = 0;    // left out, see CompareSettings::sameSurface and before; in maps they are as the reference's
 };
 
 /// Compares a layer of two pictures of equal size. Where the reference has the layer's parts (ReferenceSettings::parts), MSE and relMSE

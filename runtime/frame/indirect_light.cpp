@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "runtime/frame/moving_shapes.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/gather_light_comp.h"
 #include "spirv/lamp_light_comp.h"
+#include "spirv/moving_facings_comp.h"
+#include "spirv/moving_light_comp.h"
 #include "spirv/reconstruct_comp.h"
 #include "spirv/surface_light_comp.h"
 #include "spirv/trace_glossy_comp.h"
@@ -24,6 +27,8 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
     if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
         return fmt::format("frame size {}x{} is outside 1..{} pixels a side", desc.width, desc.height, most);
     if (const std::string fault = faultOf(knobs::traceEvery, desc.traceEvery); !fault.empty()) return fault;
+    if (desc.movingShapes > gpu::kMostMovingShapes)
+        return fmt::format("movingShapes is {}; give at most {}", desc.movingShapes, gpu::kMostMovingShapes);
     if (desc.effects.rough && !field.holdsPrefiltered())
         return "the light field holds no prefiltered radiance; bake it with the effect 'rough', or leave that out";
     if (desc.effects.diffuse && desc.effects.patches && !desc.effects.tracedDiffuse && !field.holdsPatches())
@@ -51,13 +56,15 @@ Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const 
 Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
                                       std::initializer_list<ShaderConstant> constants)
 {
-    std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                                    {gpu::kMovingBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (const Bound& bound : images) bindings.push_back({bound.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
     auto made = makeFrameSet(*gpu, frame, bindings);
     if (!made) return made.error();
     set = std::move(*made);
     for (const Bound& bound : images) set.write(bound.binding, bound.image->view(), VK_IMAGE_LAYOUT_GENERAL);
     set.write(gpu::kTileBinding, tileList->buffer());
+    set.write(gpu::kMovingBinding, moving ? moving : tileList->buffer()); // of few passes; what isn't read is bound all the same
     std::vector<ShaderConstant> values(constants);
     for (const ShaderConstant& ofField : shaderConstants(field)) values.push_back(ofField);
     values.push_back(tileList->constant());
@@ -86,9 +93,12 @@ Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline&
     if (counts && !countImage)
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = shaders.glossy.empty() ? Spirv(trace_glossy_comp) : shaders.glossy;
-    return makePass(
-        pipeline, set, shader, {{gpu::kTraceLightBinding, &image}, {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts}},
-        {{gpu::kTermId, term}, {gpu::kCountId, counts ? 1u : 0u}, {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()}});
+    return makePass(pipeline, set, shader,
+                    {{gpu::kTraceLightBinding, &image}, {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts}},
+                    {{gpu::kTermId, term},
+                     {gpu::kCountId, counts ? 1u : 0u},
+                     {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()},
+                     {gpu::kMovingId, moving ? 1u : 0u}});
 }
 
 Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
@@ -163,6 +173,32 @@ Status IndirectLight::State::makeLamps()
     return success();
 }
 
+/// Light of traced rays meets the shapes itself.
+Status IndirectLight::State::makeMoving()
+{
+    const bool looksUp = gathersDiffuse() || readsSurfaces();
+    if (!looksUp && !roughImage && !glossyPass && !mirrorPass && !diffusePass) return success();
+    const GpuImage& any = diffuseImage ? diffuseImage : roughImage ? roughImage : glossyImage ? glossyImage : mirrorImage;
+    if (auto s = makePass(movingFacings, movingFacingsSet, moving_facings_comp, {{gpu::kMovingLightBinding, &any}}, {}); !s) return s;
+    if (looksUp)
+        if (auto s = makePass(movingDiffuse, movingDiffuseSet, moving_light_comp, {{gpu::kMovingLightBinding, &diffuseImage}},
+                              {{gpu::kTermId, gpu::kTermDiffuse}});
+            !s)
+            return s;
+    if (roughImage)
+        return makePass(movingRough, movingRoughSet, moving_light_comp, {{gpu::kMovingLightBinding, &roughImage}},
+                        {{gpu::kTermId, gpu::kTermRough}});
+    return success();
+}
+
+Status IndirectLight::State::setShapes(std::span<const MovingShape> shapes)
+{
+    if (const std::string fault = faultOf(shapes, desc.movingShapes); !fault.empty())
+        return Error{ErrorCode::badArgument, "Moving shapes: " + fault};
+    shapeBytes = packShapes(shapes);
+    return success();
+}
+
 IndirectLight::State::State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes)
     : gpu(device.shared_from_this()), field(asked), desc(wanted), shaders(passes)
 {
@@ -175,6 +211,13 @@ Status IndirectLight::State::make()
     if (!block) return block.error();
     frame = std::move(*block);
     const IndirectEffects& effects = desc.effects;
+    if (desc.movingShapes > 0)
+    {
+        auto made = gpu->makeBuffer(kMovingBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::device, "shapes that move");
+        if (!made) return made.error();
+        moving = std::move(*made);
+        shapeBytes = packShapes({});
+    }
     if (effects.diffuse || effects.rough || effects.glossy || effects.mirror)
     {
         auto tiles = TileList::create(*gpu, frame, {desc.width, desc.height, everyLog(), effects.tiles, lookUps()});
@@ -217,6 +260,8 @@ Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const
     if (Status status = state->make(); !status) return status.error();
     if (field.state().lampCount > 0)
         if (Status status = state->makeLamps(); !status) return status.error();
+    if (desc.movingShapes > 0)
+        if (Status status = state->makeMoving(); !status) return status.error();
     return IndirectLight(std::move(state));
 }
 
@@ -229,7 +274,10 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
                                     {&gatherPass, &gatherSet},
                                     {&lampPass, &lampSet},
                                     {&glossyFill, &glossyFillSet},
-                                    {&diffuseFill, &diffuseFillSet}})
+                                    {&diffuseFill, &diffuseFillSet},
+                                    {&movingFacings, &movingFacingsSet},
+                                    {&movingDiffuse, &movingDiffuseSet},
+                                    {&movingRough, &movingRoughSet}})
         if (*pass) writeInputs(*set, inputs);
     if (tileList) tileList->setInputs(inputs);
     if (denoiser) denoiser.setInputs(inputs);
@@ -244,6 +292,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT);
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
+    if (moving) gpu->vk.CmdUpdateBuffer(cmd, moving.handle(), 0, shapeBytes.size(), shapeBytes.data());
     // Traces write where rays start; the other pixels must not keep the counts of the frame before.
     if (countImage)
     {
@@ -279,6 +328,13 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     };
     // Ahead of all passes, which run by its lists.
     if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
+    const auto* shapes = moving ? reinterpret_cast<const gpu::MovingShapesHead*>(shapeBytes.data()) : nullptr;
+    if (movingFacings && shapes->count > 0)
+    {
+        run(movingFacings, movingFacingsSet, [&] { gpu->vk.CmdDispatch(cmd, (shapes->count * gpu::kShapeFacings + 63) / 64, 1, 1); });
+        // Read after write: rays and the passes over shapes read their light.
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+    }
     const auto inTwo = [&](const Pipeline& first, const Pipeline& rest, const DescriptorSet& set, uint32_t left)
     {
         for (const Pipeline* half : {&first, &rest})
@@ -318,6 +374,19 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     // After the fill: where the trace is sparse, most pixels have no light before it that a filter could take.
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
+    if ((movingDiffuse || movingRough) && shapes->count > 0)
+    {
+        // Read after write: what is looked up has been stored by then.
+        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+        timed("moving shapes",
+              [&]
+              {
+                  if (movingDiffuse) run(movingDiffuse, movingDiffuseSet, onTiles(gpu::kTermDiffuse));
+                  if (movingRough) run(movingRough, movingRoughSet, onTiles(gpu::kTermRough)); // another image
+              });
+        scan("moving shapes", {&diffuseImage, &roughImage});
+    }
     if (lampPass)
     {
         // Read after write: the light of lamps is added to what the passes and filters before have stored.
@@ -334,7 +403,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 uint64_t IndirectLight::State::deviceBytes() const
 {
     const uint64_t pixels = uint64_t(desc.width) * desc.height;
-    uint64_t bytes = frame.size() + (tileList ? tileList->buffer().size() : 0);
+    uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->buffer().size() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += 16 * pixels;
     return bytes + denoiser.deviceBytes();
@@ -358,6 +427,11 @@ IndirectLight::~IndirectLight() = default;
 void IndirectLight::setInputs(const FrameInputs& inputs)
 {
     owned->setInputs(inputs);
+}
+
+Status IndirectLight::setShapes(std::span<const MovingShape> shapes)
+{
+    return owned->setShapes(shapes);
 }
 
 void IndirectLight::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept

@@ -27,16 +27,22 @@ struct IndirectLight::State
     Desc desc;
     LightShaders shaders;
     Buffer frame;
+    Buffer moving;                     // gpu::MovingShapesHead, shapes, their light; null: nothing moves
+    std::vector<std::byte> shapeBytes; // of the next frame
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
-    DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, lampSet, glossyFillSet, diffuseFillSet;
-    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, lampPass, lampRestPass, glossyFill, diffuseFill;
+    DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, lampSet, glossyFillSet, diffuseFillSet, movingFacingsSet,
+        movingDiffuseSet, movingRoughSet;
+    Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, lampPass, lampRestPass, glossyFill, diffuseFill,
+        movingFacings, movingDiffuse, movingRough;
     Denoiser denoiser;
     uint32_t lampLookUps = 0; // the list of what the first pass over lamps leaves
 
     State(Gpu& device, const LightField& asked, const Desc& wanted, const LightShaders& passes);
     Status make();
-    Status makeLamps(); // after it, where the field has some
+    Status makeLamps();  // after it, where the field has some
+    Status makeMoving(); // after it, where shapes move
+    Status setShapes(std::span<const MovingShape> shapes);
     void setInputs(const FrameInputs& inputs);
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
     uint64_t deviceBytes() const;

@@ -23,6 +23,7 @@ struct RenderSettings
     std::optional<float> roughness;                  // [0,1]: every surface has this roughness (the benchmark of both papers)
     uint32_t areaSamples = knobs::areaSamples.value; // samples of the emitters, and as many of the sky, a pixel; noise falls with the root
     uint32_t seed = knobs::frameSeed.value;
+    std::vector<MovingShape> shapes;                // that move: of the scene that is drawn, but not of the field's
     LightShaders lightShaders;                      // as makeIndirectLight() takes them
     float normalOffset = knobs::normalOffset.value; // share of the scene's diagonal that rays start off their surface
 };
@@ -68,6 +69,8 @@ public:
     /// What passes read anew in each frame, from the next on: glossyRays, raysBelow, areaSamples, normalOffset and seed. The rest of the
     /// settings is fixed. Errors: badArgument (names the knob); what was set before stays.
     Status setSampling(const RenderSettings& wanted);
+    /// As IndirectLight::setShapes(), of as many as RenderSettings::shapes has at most. What is drawn is the scene's affair.
+    Status setShapes(std::span<const MovingShape> shapes) { return indirect->setShapes(shapes); }
     /// The next frame doesn't follow the one before: the camera is cut.
     void cut() { before.reset(); }
     /// Light is another from the next frame on: histories forget what was.

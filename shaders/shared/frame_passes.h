@@ -10,11 +10,13 @@ const uint kNormalRoughnessBinding = 1u;
 const uint kBaseColorMetallicBinding = 2u;
 const uint kFrameBinding = 3u;
 const uint kTileBinding = 8u;
+const uint kMovingBinding = 12u; // shapes that move, of passes that ask them
 
 // Of each pass.
 const uint kTraceLightBinding = 4u; // trace_glossy.comp
 const uint kTraceCountsBinding = 5u;
 const uint kFillLightBinding = 4u; // reconstruct.comp
+const uint kMovingLightBinding = 4u; // moving_light.comp
 const uint kGatherDiffuseBinding = 4u; // gather_light.comp
 const uint kGatherRoughBinding = 5u;
 const uint kSurfaceDiffuseBinding = 4u; // surface_light.comp
@@ -64,6 +66,7 @@ const uint kLookUpKindId = 21u;  // of the first list, kLookUpsPerPixel...; then
 
 const uint kLampTermsId = 25u; // lamp_light.comp: bits of the terms that are made
 const uint kLampEachId = 26u;  // lamp_light.comp
+const uint kMovingId = 27u;    // trace_glossy.comp: whether shapes move
 
 struct DenoisePush
 {

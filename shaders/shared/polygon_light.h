@@ -47,6 +47,25 @@ SCONCE_PURE vec3 cornerInLobe(vec3 corner, vec3 view, real alpha)
     return vec3(halfway.x / alpha, halfway.y / alpha, halfway.z);
 }
 
+/// Twice the mean direction of a polygon's half vectors, in the space of cornerInLobe(), z >= 0.
+SCONCE_PURE vec3 polygonInLobe(real alpha, vec3 view, vec3 a, vec3 b, vec3 c, vec3 d)
+{
+    vec3 p = cornerInLobe(a, view, alpha);
+    vec3 q = cornerInLobe(b, view, alpha);
+    vec3 r = cornerInLobe(c, view, alpha);
+    vec3 s = cornerInLobe(d, view, alpha);
+    vec3 sum = edgeOfPolygon(p, q) + edgeOfPolygon(q, r) + edgeOfPolygon(r, s) + edgeOfPolygon(s, p);
+    return sum.z < real(0.0) ? -sum : sum;
+}
+
+/// Share of the specular lobe's normals that reflect a polygon to a viewer, [0,1].
+/// @param view  unit, z > 0
+SCONCE_PURE real polygonOfLobe(real alpha, vec3 view, vec3 a, vec3 b, vec3 c, vec3 d)
+{
+    if (a.z <= real(0.0) && b.z <= real(0.0) && c.z <= real(0.0) && d.z <= real(0.0)) return real(0.0);
+    return min(polygonInLobe(alpha, view, a, b, c, d).z / (real(2.0) * kBrdfPi), real(1.0));
+}
+
 /// Radiance over the polygon's that the specular lobe reflects to a viewer. GGX's normals are a cosine's, stretched by alpha (Walter et al. 2007,
 /// "Microfacet Models for Refraction through Rough Surfaces", equation 35), so that their share in a polygon of half vectors is that polygon's
 /// irradiance where it is shrunk again: a linearly transformed cosine (Heitz et al. 2016, "Real-Time Polygonal-Light Shading with Linearly
@@ -56,12 +75,7 @@ SCONCE_PURE vec3 cornerInLobe(vec3 corner, vec3 view, real alpha)
 SCONCE_PURE vec3 polygonReflected(BrdfLobes lobes, real alpha, vec3 view, vec3 a, vec3 b, vec3 c, vec3 d)
 {
     if (a.z <= real(0.0) && b.z <= real(0.0) && c.z <= real(0.0) && d.z <= real(0.0)) return vec3(real(0.0));
-    vec3 p = cornerInLobe(a, view, alpha);
-    vec3 q = cornerInLobe(b, view, alpha);
-    vec3 r = cornerInLobe(c, view, alpha);
-    vec3 s = cornerInLobe(d, view, alpha);
-    vec3 sum = edgeOfPolygon(p, q) + edgeOfPolygon(q, r) + edgeOfPolygon(r, s) + edgeOfPolygon(s, p);
-    if (sum.z < real(0.0)) sum = -sum;
+    vec3 sum = polygonInLobe(alpha, view, a, b, c, d);
     real share = sum.z / (real(2.0) * kBrdfPi);
     vec3 halfway = vec3(sum.x * alpha, sum.y * alpha, sum.z);
     real size = sqrt(dot(halfway, halfway));

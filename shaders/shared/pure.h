@@ -22,6 +22,7 @@ template <class Real> struct Pure
 #include "shared/brdf_text.h"
 #include "shared/normal_map.h"
 #include "shared/polygon_light.h"
+#include "shared/moving_text.h"
 };
 
 } // namespace sconce::pure_text

@@ -131,6 +131,44 @@ TEST(CompareImages, PixelsThatSeeAnotherSurfaceAreLeftOut)
     EXPECT_FALSE(compareImages(picture, reference, settings)) << "none is left";
 }
 
+// Four pixels: the light of one has changed, of one barely, one shows what has come, one is as it was.
+TEST(CompareImages, OnlyWhatHasChangedCounts)
+{
+    ImageSet picture, reference, before;
+    for (ImageSet* images : {&picture, &reference, &before})
+    {
+        images->width = images->height = 2;
+        images->add("beauty", 3);
+        std::ranges::fill(images->layers[0].pixels, 1.0f);
+        images->add("depth", 1);
+        std::ranges::fill(images->layers[1].pixels, 2.0f);
+    }
+    const auto set = [](ImageSet& images, size_t pixel, float value)
+    { std::fill_n(images.layers[0].pixels.begin() + ptrdiff_t(3 * pixel), 3, value); };
+    set(reference, 0, 0.5f);
+    set(reference, 1, 0.95f);
+    set(reference, 2, 0.2f);
+    reference.layers[1].pixels[2] = 1.0f;
+    set(picture, 3, 7.0f); // wrong, and none of either
+    CompareSettings settings;
+    settings.before = &before;
+    const auto light = compareImages(picture, reference, settings);
+    ASSERT_TRUE(light) << light.error().message;
+    EXPECT_EQ(light->otherSurfacePixels, 3u);
+    EXPECT_NEAR(*light->mean, 2.0, 1e-6);
+    settings.newSurface = true;
+    const auto surface = compareImages(picture, reference, settings);
+    ASSERT_TRUE(surface) << surface.error().message;
+    EXPECT_NEAR(*surface->mean, 5.0, 1e-5);
+    settings.before = &reference;
+    const auto nothing = compareImages(picture, reference, settings);
+    ASSERT_FALSE(nothing);
+    EXPECT_EQ(nothing.error().message, "nothing has changed between the two references; compare all pixels");
+    before.layers.pop_back();
+    settings.before = &before;
+    EXPECT_NE(compareImages(picture, reference, settings).error().message.find("no layer 'depth'"), std::string::npos);
+}
+
 TEST(ErrorColours, EndsAreMagmasEnds)
 {
     const std::vector<float> colours = errorColours(std::vector<float>{0.0f, 1.0f});

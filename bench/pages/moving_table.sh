@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# What moves and is in no light field: eight poses each of a walking figure and of a door, drawn with and without telling the light of them, against the
+# path tracer, by masks: the light of surfaces that stayed where it changed by over a tenth (diffuse: shadows; glossy: reflections), and the shapes
+# themselves. Writes bench/results/moving_shapes.json. Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180], SPP=paths a pixel
+# [256], POSES=n of each [8], OUT=folder, whose fields and references are kept [out/moving].
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+scenes=${SCONCE_SCENES:-../shared/scenes}
+out=${OUT:-out/moving} size=${SIZE:-320x180} spp=${SPP:-256} poses=${POSES:-8}
+[[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
+sconce=${SCONCE:-build/release/tools/sconce}
+mkdir -p "$out"
+# Scene, probes, view, then the path of the figure from a to b and the door's hinge.
+run() {
+    local scene=$1 count=$2 eye=$3 target=$4 from=$5 to=$6 hinge=$7
+    local name at camera
+    name=$(basename "${scene%.gl*}")
+    [[ -f $scenes/$scene ]] && scene=$scenes/$scene
+    at=$out/$name
+    camera=("--eye=$eye" "--target=$target" --fov 65 --size "$size")
+    [[ -f $at.sconce ]] || {
+        "$sconce" place "$scene" --count "$count" -o "$at.probes.json" --quiet > /dev/null
+        "$sconce" bake "$scene" --probes "$at.probes.json" --resolution 416 --effects all -o "$at.sconce" --quiet > /dev/null
+    }
+    [[ -f $at.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --spp "$spp" --bounces 8 --pixel-centre -o "$at.ref.exr" --quiet > /dev/null
+    for kind in figure door; do
+        for ((i = 0; i < poses; ++i)); do
+            local pose=$at.$kind.$i
+            if [[ $kind == figure ]]; then
+                local place
+                place=$(python3 -c 'import sys
+a, b, s = *([float(x) for x in v.split(",")] for v in sys.argv[1:3]), float(sys.argv[3])
+print(",".join(f"{p + s * (q - p):.4g}" for p, q in zip(a, b)))' "$from" "$to" "$(python3 -c "print($i / max($poses - 1, 1))")")
+                python3 bench/pages/moving_shapes.py figure "$place" 35 "$(python3 -c "print(0.13 * $i)")" > "$pose.json"
+            else
+                python3 bench/pages/moving_shapes.py door "$hinge" 0 "$(python3 -c "print($i / max($poses - 1, 1))")" > "$pose.json"
+            fi
+            [[ -f $pose.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --shapes "$pose.json" --spp "$spp" --bounces 8 --pixel-centre -o "$pose.ref.exr" --quiet > /dev/null
+            "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --frames 3 -o "$pose.told.exr" --png "$pose.png" --json --quiet > "$pose.told.json"
+            "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --drawn-only --frames 3 -o "$pose.untold.exr" --json --quiet > "$pose.untold.json"
+            for picture in told untold; do
+                for mask in "diffuse_indirect" "glossy_indirect" "beauty --new-surface"; do
+                    "$sconce" compare "$pose.$picture.exr" "$pose.ref.exr" --changed-from "$at.ref.exr" --layer ${mask} --metric mse,relmse,mean --json > "$pose.$picture.${mask%% *}.error.json" 2> /dev/null || echo '{}' > "$pose.$picture.${mask%% *}.error.json" # nothing has changed there
+                done
+            done
+        done
+    done
+    python3 bench/pages/bench_rows.py moving "$at" "$name, $count" "$poses"
+}
+{
+    run hall 24 "${HALL_EYE:-3,1.7,2}" "${HALL_TARGET:--2,0.9,-1}" "${HALL_FROM:--1.5,0,-1}" "${HALL_TO:-1,0,0.5}" "${HALL_DOOR:-0,0,-1.5}"
+    run sponza/Sponza.gltf 54 "${SPONZA_EYE:-4,1.8,0.3}" "${SPONZA_TARGET:--6,1.2,-0.2}" "${SPONZA_FROM:--1,0,-0.6}" "${SPONZA_TO:-1.5,0,0.4}" "${SPONZA_DOOR:-0,0,-1}"
+} | tee "$out/rows.txt"
+python3 bench/pages/bench_rows.py movings "$out/rows.txt"
