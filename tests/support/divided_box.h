@@ -35,6 +35,9 @@ inline FieldData dividedBox(uint32_t faceSize, uint32_t probes = 2)
         field.probes[probe] = {};
         field.probes[probe].centre = (centre - field.info.origin) / field.info.scale;
         for (int face = 0; face < 6; ++face)
+        {
+            uint32_t* words =
+                field.distance.data() + size_t(probe) * field.info.wordsPerProbe + size_t(face) * (field.info.wordsPerProbe / 6);
             for (uint32_t i = 0; i < faceSize * faceSize; ++i)
             {
                 const float u = 2.0f * (float(i % faceSize) + 0.5f) / float(faceSize) - 1.0f,
@@ -52,9 +55,10 @@ inline FieldData dividedBox(uint32_t faceSize, uint32_t probes = 2)
                 }
                 wall = text.faceCoordinates(face, wall);
                 const float perTexel = 2.0f / (float(faceSize) * glm::dot(wall, vec3(u, v, 1.0f)));
-                field.distance[size_t(probe) * field.info.wordsPerProbe + size_t(face) * (field.info.wordsPerProbe / 6) + i] =
-                    text.packTexel(field.info.scale / w, wall.x * perTexel, wall.y * perTexel);
+                words[i] = text.packTexel(field.info.scale / w, wall.x * perTexel, wall.y * perTexel);
             }
+            buildChain(words, faceSize);
+        }
         summariseProbe(field, probe);
     }
     return field;

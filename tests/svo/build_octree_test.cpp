@@ -92,7 +92,7 @@ TEST(BuildOctree, WhatAChainTellsOfABlockIsSoOfItsPoints)
         const auto plan = planOctree({field.info, field.probes, field.distance}, {.voxels = 64});
         ASSERT_TRUE(plan);
         const gpu::OctreeBuild& build = plan->build;
-        const rank_text::Text text{build, field};
+        rank_text::Text text{build, field};
         std::mt19937 random(11);
         std::uniform_real_distribution<float> within(-0.5f, float(gpu::kBlock) + 0.5f);
         const glm::ivec3 blocks = (build.count + gpu::kBlock - 1) / gpu::kBlock;
@@ -110,7 +110,7 @@ TEST(BuildOctree, WhatAChainTellsOfABlockIsSoOfItsPoints)
                 }
             }
         for (const int sight : {text.kSightNone, text.kSightAll})
-            EXPECT_GT(answered[sight], answered[text.kSightUnsure]) << faces << ": most of them it knows";
+            EXPECT_GT(answered[sight], 800) << faces << " of " << answered[0] + answered[1] + answered[2];
     }
 }
 
