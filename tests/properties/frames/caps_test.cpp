@@ -67,8 +67,7 @@ protected:
         bake.surfaceRays = 16;
         bake.scene.light = {
             .emitterSamples = 6, .skySamples = 8, .sunShadow = 512, .pointShadow = 64, .emitterShadow = 64, .skyShadow = 128};
-        BakeReport report;
-        auto field = bakeLightField(gpu().host, scene, kProbes, bake, {}, report);
+        auto field = bakeOnce(scene, kProbes, bake);
         EXPECT_TRUE(field) << field.error().message;
         made.field = std::move(*field);
         RenderSettings settings = settingsOf(kSide);

@@ -24,8 +24,7 @@ protected:
         bake.chart = chart;
         bake.bounces = 1;
         bake.surfaceTexels = 0; // of cube faces alone
-        BakeReport report;
-        const auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        const auto field = bakeOnce(scene, probes, bake);
         if (!field) return field.error();
         RenderSettings settings = settingsOf(96);
         settings.raysBelow = 0.0f; // no rays, whose tracers differ

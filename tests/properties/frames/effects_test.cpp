@@ -107,8 +107,7 @@ TEST_F(EffectsTest, WhatIsNotCalledForHasNoPassAndNoBytes)
     const EffectPlan plan = *planEffects(checkScene(scene));
     bake.radiance = plan.needsRadiance();
     bake.prefiltered = plan.needsPrefiltered();
-    BakeReport report;
-    const auto field = bakeLightField(gpu().host, scene, kProbes, bake, {}, report);
+    const auto field = bakeOnce(scene, kProbes, bake);
     ASSERT_TRUE(field);
     EXPECT_TRUE(field->radiance.empty());
     EXPECT_FALSE(field->prefiltered.empty());

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "runtime/bake/bake.h"
+#include "runtime/bake/bake_key.h"
 #include "runtime/scene/scene_renderer.h"
 #include "scene/triangle_rays.h"
 #include "tests/support/device.h"
@@ -40,8 +42,7 @@ protected:
     Result<FieldData> bakeField(const Scene& scene, std::span<const vec3> probes, uint32_t resolution = 128, uint32_t bounces = 2,
                                 uint32_t surfaceTexels = kFewTexels, std::optional<uint32_t> surfaceRays = {})
     {
-        BakeReport report;
-        return bakeLightField(gpu().host, scene, probes, bakeOf(resolution, bounces, surfaceTexels, surfaceRays), {}, report);
+        return bakeOnce(scene, probes, bakeOf(resolution, bounces, surfaceTexels, surfaceRays));
     }
 
     /// Lit by rays to the scene's triangles, as `sconce bake` does by default.
@@ -50,8 +51,7 @@ protected:
         const auto rays = TriangleRays::build(scene);
         if (!rays) return rays.error();
         bake.rays = &*rays;
-        BakeReport report;
-        return bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        return bakeOnce(scene, probes, bake);
     }
 
     /// An image of a host's, rows of `width` pixels, in the layout in which shaders read it.
@@ -92,6 +92,18 @@ protected:
         auto renderer = SceneRenderer::create(gpu(), *device, *light, settings);
         if (!renderer) return renderer.error();
         return (*renderer)->render(drawn.cameras.front());
+    }
+
+    /// Tests of one process that ask for the same field share it: a bake takes longer than what most of them do with it.
+    Result<FieldData> bakeOnce(const Scene& scene, std::span<const vec3> probes, const BakeSettings& bake)
+    {
+        static std::map<uint64_t, FieldData> made;
+        const uint64_t key = bakeKey(scene, probes, bake);
+        if (const auto found = made.find(key); found != made.end()) return found->second;
+        BakeReport report;
+        auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        if (field) made.emplace(key, *field);
+        return field;
     }
 };
 

@@ -115,8 +115,7 @@ TEST_F(GridLightTest, EachPixelIsThePapersBlendOfEightCorners)
     bake.chart = gpu::kChartOctahedral;
     bake.bounces = 0;
     bake.grid = kGrid;
-    BakeReport report;
-    auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+    auto field = bakeOnce(scene, probes, bake);
     ASSERT_TRUE(field) << field.error().message;
     twin::LightFieldTwin<float> text(*field, {});
     const double unit = field->info.scale;

@@ -61,8 +61,7 @@ protected:
         bake.scene = fewSamples();
         bake.surfaceTexels = 26;
         bake.surfaceRays = 16;
-        BakeReport report;
-        return bakeLightField(gpu().host, scene, kFewProbes, bake, {}, report);
+        return bakeOnce(scene, kFewProbes, bake);
     }
 
     /// Every effect at once, filters in space and time.

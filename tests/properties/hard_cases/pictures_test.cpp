@@ -61,8 +61,7 @@ protected:
         bake.bounces = 1;
         bake.scene = samples();
         bake.surfaceTexels = 26;
-        BakeReport report;
-        const auto field = bakeLightField(gpu().host, picture.scene, picture.probes, bake, {}, report);
+        const auto field = bakeOnce(picture.scene, picture.probes, bake);
         EXPECT_TRUE(field) << field.error().message;
         const auto device = DeviceScene::create(gpu(), picture.scene, field->info, samples());
         const auto light = makeLightField(gpu(), *field);
