@@ -158,7 +158,8 @@ Json guardOptions(const BenchSettings& settings, const PlanSettings& plan)
 {
     return {{"size", {settings.width, settings.height}}, {"rays", settings.rays},        {"spp", settings.referencePaths},
             {"until", settings.referenceUntil},          {"frames", settings.frames},    {"probes", plan.probes},
-            {"resolution", plan.ours.resolution},        {"bounces", plan.ours.bounces}, {"knobs", plan.knobs}};
+            {"resolution", plan.ours.resolution},        {"bounces", plan.ours.bounces}, {"knobs", plan.knobs},
+            {"surface_rays", plan.ours.surfaceRays}};
 }
 
 void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings& plan)
@@ -172,6 +173,7 @@ void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings&
     plan.probes = options["probes"];
     plan.ours.resolution = options["resolution"];
     plan.ours.bounces = options["bounces"];
+    plan.ours.surfaceRays = options.value("surface_rays", knobs::surfaceRays.value); // older guards have none
     plan.knobs = options["knobs"].get<std::vector<std::string>>();
 }
 
@@ -270,6 +272,7 @@ void addBenchCommand(CLI::App& app, Context& context)
     addKnob(bench, "--probes", options->plan.probes, knobs::benchProbes);
     addKnob(bench, "--resolution", options->plan.ours.resolution, knobs::benchResolution, "TEXELS");
     addKnob(bench, "--bounces", options->plan.ours.bounces, knobs::benchBounces);
+    addKnob(bench, "--surface-rays", options->plan.ours.surfaceRays, knobs::surfaceRays);
     bench->add_option("--knobs", options->plan.knobs, described("Sweep only these, separated by commas", words("all")))
         ->delimiter(',')
         ->type_name("LIST");

@@ -15,8 +15,9 @@ namespace
 
 std::vector<std::string> benchInto(const std::string& folder, const std::string& frames = "2")
 {
-    return {"bench",  "cornell", "-o",     folder, "--methods-only", "--quick-grids", "--probes", "2", "--resolution", "64",
-            "--size", "32x18",   "--rays", "500",  "--frames",       frames,          "--spp",    "4", "--bounces",    "0"};
+    return {"bench",          "cornell", "-o",     folder, "--methods-only", "--quick-grids", "--probes", "2", "--resolution", "64",
+            "--size",         "32x18",   "--rays", "500",  "--frames",       frames,          "--spp",    "4", "--bounces",    "0",
+            "--surface-rays", "16"};
 }
 
 json resultsIn(const std::string& folder)
@@ -120,8 +121,9 @@ TEST(BenchCommand, AWorsenedFigureFailsTheCheckAndIsNamed)
 {
     const TestFolder folder;
     const std::string file = folder / "baseline.json";
-    ASSERT_EQ(sconceCommand({"bench",  "cornell", "--baseline", file, "--probes", "2", "--resolution", "64", "--size",  "32x18",
-                             "--rays", "500",     "--frames",   "1",  "--spp",    "4", "--bounces",    "0",  "--knobs", "ranked"})
+    ASSERT_EQ(sconceCommand({"bench",     "cornell", "--baseline", file,     "--probes",       "2", "--resolution", "64",
+                             "--size",    "32x18",   "--rays",     "500",    "--frames",       "1", "--spp",        "4",
+                             "--bounces", "0",       "--knobs",    "ranked", "--surface-rays", "16"})
                   .exit,
               0);
     json guard = json::parse(readText(file));

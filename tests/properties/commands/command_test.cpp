@@ -512,6 +512,67 @@ TEST(Command, APictureNeedsNoGeometry)
     EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
 }
 
+TEST(Command, ShapesAreReadOrRefusedWithASentence)
+{
+    const TestFolder folder;
+    const auto reference = [&](const std::string& shapes)
+    {
+        writeText(folder / "s.json", shapes);
+        return sconceCommand(
+            {"reference", "cornell", "--shapes", folder / "s.json", "--size", "16x16", "--spp", "1", "-o", folder / "x.exr", "-q"});
+    };
+    expectSentence(reference("[]"), 3, "no JSON object with an array `shapes`");
+    expectSentence(reference(R"({"shapes": [{}]})"), 3, "of shape 0 it has no kind");
+    expectSentence(reference(R"({"shapes": [{"kind": "cone"}]})"), 3, "its kind is 'cone'; give sphere, capsule, box");
+    expectSentence(reference(R"({"shapes": [{"kind": "box"}, {"kind": "box", "half": [1, 2]}]})"), 3, "of shape 1 its 'half'");
+    expectSentence(reference(R"({"shapes": [{"kind": "box", "size": 3}]})"), 3, "its 'size' is unknown");
+    expectSentence(reference(R"({"shapes": [{"kind": "sphere", "half": [-1, 0, 0]}]})"), 3, "its radius is not above 0");
+    expectSentence(sconceCommand({"reference", "cornell", "--shapes", folder / "none.json", "-o", folder / "x.exr"}), 5,
+                   "Cannot read shapes");
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
+    EXPECT_EQ(reference(R"({"shapes": []})").exit, 0);
+}
+
+// A ball on the floor: its shadow in light that was looked up, and what telling the light of it changes against the truth.
+TEST(Command, WhatMovesIsDrawnAndTold)
+{
+    const TestFolder folder;
+    writeText(folder / "s.json",
+              R"({"shapes": [{"kind": "sphere", "centre": [0, 0.35, 0.75], "half": [0.2, 0, 0], "albedo": [0.6, 0.6, 0.6]}]})");
+    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "4", "-q"}).exit, 0);
+    ASSERT_EQ(sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "--resolution", "128", "--surface-texels", "26",
+                             "--surface-rays", "64", "-o", folder / "f.sconce", "-q"})
+                  .exit,
+              0);
+    const std::vector<std::string> view = {"cornell", "--eye=0,1.2,2.4", "--target=0,0.2,0.5", "--fov", "50", "--size", "64x48"};
+    const auto with = [&](const char* command, std::vector<std::string> more)
+    {
+        more.insert(more.begin(), view.begin(), view.end());
+        more.insert(more.begin(), command);
+        return sconceCommand(more);
+    };
+    ASSERT_EQ(with("reference", {"--spp", "256", "-o", folder / "before.exr"}).exit, 0);
+    ASSERT_EQ(with("reference", {"--spp", "256", "--shapes", folder / "s.json", "-o", folder / "truth.exr"}).exit, 0);
+    const std::vector<std::string> drawn = {"--field", folder / "f.sconce", "--shapes", folder / "s.json", "-o"};
+    const auto render = [&](const std::string& name, bool only)
+    {
+        std::vector<std::string> more = drawn;
+        more.push_back(folder / name);
+        if (only) more.push_back("--drawn-only");
+        return with("render", more);
+    };
+    ASSERT_EQ(render("told.exr", false).exit, 0);
+    ASSERT_EQ(render("untold.exr", true).exit, 0);
+    const auto error = [&](const std::string& name)
+    {
+        return jsonOf(sconceCommand({"compare", folder / name, folder / "truth.exr", "--changed-from", folder / "before.exr", "--layer",
+                                     "diffuse_indirect", "--metric", "mse", "--json"}))
+            .at("mse")
+            .get<double>();
+    };
+    EXPECT_LT(error("told.exr"), 0.5 * error("untold.exr"));
+}
+
 // Light groups from bake to picture: dimmed live, dimmed in the file and path-traced in the dimmed scene are the same light.
 TEST(Command, LightGroupsAreDimmedInPicturesFilesAndReferences)
 {
