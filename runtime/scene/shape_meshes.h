@@ -9,7 +9,7 @@ namespace sconce
 {
 
 /// Adds shapes that move to a scene, as matt surfaces: what a host would draw of them, and what the truth is traced in. Round ones are
-/// within 0.3 % of their radius.
+/// within 0.4 % of their radius.
 void addShapes(Scene& scene, std::span<const MovingShape> shapes);
 
 } // namespace sconce

@@ -1,6 +1,7 @@
 #include "runtime/scene/shape_meshes.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ MovingShape turned(MovingShape::Kind kind)
     return shape;
 }
 
-// What is drawn is what light is told of: every corner lies on the shape, and the middle of every triangle that isn't within it near it.
+// What is drawn is what light is told of: every corner lies on the shape, and what lies near it has its area.
 TEST(ShapeMeshes, LieOnTheirShapes)
 {
     for (const auto kind : {MovingShape::Kind::sphere, MovingShape::Kind::capsule, MovingShape::Kind::box})
@@ -43,18 +44,17 @@ TEST(ShapeMeshes, LieOnTheirShapes)
         double farthest = -1.0;
         for (const vec3& position : scene.positions) farthest = std::max(farthest, distance(position));
         EXPECT_NEAR(farthest, 0.0, 1e-5) << int(kind);
-        double deepest = 0.0;
-        size_t outer = 0;
+        double outer = 0.0; // area of what isn't within it, as an end's other half is in a capsule
         for (const glm::uvec3& corner : scene.triangles)
         {
-            const vec3 middle = (scene.positions[corner.x] + scene.positions[corner.y] + scene.positions[corner.z]) / 3.0f;
-            const double off = distance(middle);
-            if (off < -0.01) continue; // of an end's half or lid within a capsule
-            ++outer;
-            deepest = std::min(deepest, off);
+            const vec3 a = scene.positions[corner.x], b = scene.positions[corner.y], c = scene.positions[corner.z];
+            if (distance((a + b + c) / 3.0f) > -0.004 * double(shape.half.x)) outer += 0.5 * double(glm::length(glm::cross(b - a, c - a)));
         }
-        EXPECT_GT(deepest, -0.003 * double(shape.half.x)) << int(kind);
-        EXPECT_GT(outer, kind == MovingShape::Kind::box ? 11u : 1000u);
+        const double r = double(shape.half.x), h = double(shape.half.y), d = double(shape.half.z), pi = std::numbers::pi;
+        const double area = kind == MovingShape::Kind::sphere    ? 4.0 * pi * r * r
+                            : kind == MovingShape::Kind::capsule ? 4.0 * pi * r * (r + h)
+                                                                 : 8.0 * (r * h + h * d + d * r);
+        EXPECT_NEAR(outer / area, 1.0, 0.01) << int(kind);
     }
 }
 
