@@ -246,6 +246,18 @@ void addReferenceCommands(CLI::App& app, Context& context)
                                             "surface, light can't be compared",
                                             100.0f * kOtherSurface),
                                 words("all pixels count")));
+    CLI::Option* before =
+        compare
+            ->add_option("--changed-from", compareOptions->before,
+                         described(fmt::format("Another reference, before something came: of surfaces that stayed only pixels count whose "
+                                               "light has changed by over {:g} %",
+                                               100.0f * kChanged),
+                                   words("all pixels count")))
+            ->type_name("EXR");
+    compare
+        ->add_flag("--new-surface", compareOptions->newSurface,
+                   described("With --changed-from: the pixels that show another surface, in their place", words("off")))
+        ->needs(before);
     compare
         ->add_option("-o,--output", compareOptions->diff,
                      described("PNG of the error in false colours: flip, or relative error without flip", words("none")))

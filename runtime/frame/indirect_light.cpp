@@ -180,14 +180,20 @@ Status IndirectLight::State::makeMoving()
     if (!looksUp && !roughImage && !glossyPass && !mirrorPass && !diffusePass) return success();
     const GpuImage& any = diffuseImage ? diffuseImage : roughImage ? roughImage : glossyImage ? glossyImage : mirrorImage;
     if (auto s = makePass(movingFacings, movingFacingsSet, moving_facings_comp, {{gpu::kMovingLightBinding, &any}}, {}); !s) return s;
-    if (looksUp)
-        if (auto s = makePass(movingDiffuse, movingDiffuseSet, moving_light_comp, {{gpu::kMovingLightBinding, &diffuseImage}},
-                              {{gpu::kTermId, gpu::kTermDiffuse}});
-            !s)
-            return s;
-    if (roughImage)
-        return makePass(movingRough, movingRoughSet, moving_light_comp, {{gpu::kMovingLightBinding, &roughImage}},
-                        {{gpu::kTermId, gpu::kTermRough}});
+    const uint32_t looks = field.holdsPrefiltered() && readsSurfaces() ? 1u : 0u;
+    for (const uint32_t boxes : {0u, 1u})
+    {
+        if (looksUp)
+            if (auto s = makePass(movingDiffuse[boxes], movingDiffuseSet, moving_light_comp, {{gpu::kMovingLightBinding, &diffuseImage}},
+                                  {{gpu::kTermId, gpu::kTermDiffuse}, {gpu::kMovingBoxesId, boxes}, {gpu::kMovingLooksId, looks}});
+                !s)
+                return s;
+        if (roughImage)
+            if (auto s = makePass(movingRough[boxes], movingRoughSet, moving_light_comp, {{gpu::kMovingLightBinding, &roughImage}},
+                                  {{gpu::kTermId, gpu::kTermRough}, {gpu::kMovingBoxesId, boxes}, {gpu::kMovingLooksId, 0}});
+                !s)
+                return s;
+    }
     return success();
 }
 
@@ -196,6 +202,8 @@ Status IndirectLight::State::setShapes(std::span<const MovingShape> shapes)
     if (const std::string fault = faultOf(shapes, desc.movingShapes); !fault.empty())
         return Error{ErrorCode::badArgument, "Moving shapes: " + fault};
     shapeBytes = packShapes(shapes);
+    kindsMove = {};
+    for (const MovingShape& shape : shapes) kindsMove[shape.kind == MovingShape::Kind::box] = true;
     return success();
 }
 
@@ -276,8 +284,8 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
                                     {&glossyFill, &glossyFillSet},
                                     {&diffuseFill, &diffuseFillSet},
                                     {&movingFacings, &movingFacingsSet},
-                                    {&movingDiffuse, &movingDiffuseSet},
-                                    {&movingRough, &movingRoughSet}})
+                                    {&movingDiffuse[0], &movingDiffuseSet},
+                                    {&movingRough[0], &movingRoughSet}})
         if (*pass) writeInputs(*set, inputs);
     if (tileList) tileList->setInputs(inputs);
     if (denoiser) denoiser.setInputs(inputs);
@@ -374,16 +382,20 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     // After the fill: where the trace is sparse, most pixels have no light before it that a filter could take.
     if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
     scan("glossy denoise", {&glossyImage, &scratch});
-    if ((movingDiffuse || movingRough) && shapes->count > 0)
+    if ((movingDiffuse[0] || movingRough[0]) && shapes->count > 0)
     {
-        // Read after write: what is looked up has been stored by then.
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         timed("moving shapes",
               [&]
               {
-                  if (movingDiffuse) run(movingDiffuse, movingDiffuseSet, onTiles(gpu::kTermDiffuse));
-                  if (movingRough) run(movingRough, movingRoughSet, onTiles(gpu::kTermRough)); // another image
+                  for (const size_t boxes : {0, 1})
+                  {
+                      if (!kindsMove[boxes]) continue;
+                      // Read after write: what is looked up has been stored by then, and so has what shapes of the other kind left of it.
+                      memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
+                                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+                      if (movingDiffuse[boxes]) run(movingDiffuse[boxes], movingDiffuseSet, onTiles(gpu::kTermDiffuse));
+                      if (movingRough[boxes]) run(movingRough[boxes], movingRoughSet, onTiles(gpu::kTermRough)); // another image
+                  }
               });
         scan("moving shapes", {&diffuseImage, &roughImage});
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <memory>
 
@@ -29,12 +30,14 @@ struct IndirectLight::State
     Buffer frame;
     Buffer moving;                     // gpu::MovingShapesHead, shapes, their light; null: nothing moves
     std::vector<std::byte> shapeBytes; // of the next frame
+    std::array<bool, 2> kindsMove{};   // round shapes, boxes
     GpuImage glossyImage, scratch, mirrorImage, countImage, noCounts, diffuseImage, roughImage;
     std::unique_ptr<TileList> tileList; // its address is what denoisers keep; null when no term is made
     DescriptorSet glossySet, mirrorSet, diffuseSet, surfaceSet, gatherSet, lampSet, glossyFillSet, diffuseFillSet, movingFacingsSet,
         movingDiffuseSet, movingRoughSet;
     Pipeline glossyPass, mirrorPass, diffusePass, surfacePass, surfaceRestPass, gatherPass, lampPass, lampRestPass, glossyFill, diffuseFill,
-        movingFacings, movingDiffuse, movingRough;
+        movingFacings;
+    std::array<Pipeline, 2> movingDiffuse, movingRough; // of round shapes, of boxes
     Denoiser denoiser;
     uint32_t lampLookUps = 0; // the list of what the first pass over lamps leaves
 
