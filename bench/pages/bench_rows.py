@@ -6,6 +6,7 @@
     bench/pages/leaks_sheet.sh                                  bench/results/walls.json
     bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
     bench/pages/response_table.sh                               bench/results/light_response.json
+    bench/pages/effects_table.sh                                bench/results/effects.json and effects_passes.json
     bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
@@ -327,6 +328,31 @@ def bounces(arguments):
            "a gathering ray that meets a coat, or a place no probe sees, goes on within its bounce: some light comes a bounce early"], rows)
 
 
+def effects(arguments):
+    """What each scene's effects cost, auto against all, of the files that effects_table.sh leaves in a folder; and each pass."""
+    folder, names, turns = Path(arguments[0]), arguments[2:], int(arguments[1])
+    host = ("G-buffer", "direct light", "compose")  # what a renderer has anyway
+    rows, passes = {}, {}
+    for name in names:
+        plans = {}
+        for plan in ("auto", "all"):
+            runs = [json.loads((folder / f"{name}.{plan}.{turn}.json").read_text()) for turn in range(turns)]
+            plans[plan] = runs[0] | {"passes_ms": {one: min(run["passes_ms"][one] for run in runs) for one in runs[0]["passes_ms"]}}
+            passes[f"{slug(name)}__{plan}"] = {"label": name, "plan": plan} | {slug(one): f"{ms:.0f}" for one, ms in plans[plan]["passes_ms"].items()}
+        light = {plan: sum(ms for one, ms in run["passes_ms"].items() if one not in host) for plan, run in plans.items()}
+        auto, size = plans["auto"], lambda end: f"{(folder / f'{name}{end}').stat().st_size / 1e6:.1f}"
+        rows[slug(name)] = {"label": name, "calls_for": " ".join(one for one in ("diffuse", "rough", "glossy", "mirror", "emitters", "sky") if auto["effects"][one]),
+                            "traced_pixels": f"{100 * auto.get('traced_pixels', 0):.1f} %", "auto_ms": f"{light['auto']:.0f}", "all_ms": f"{light['all']:.0f}",
+                            "ratio": f"{light['all'] / light['auto']:.2f}x", "auto_images_mb": f"{auto['device_bytes'] / 1e6:.1f}",
+                            "all_images_mb": f"{plans['all']['device_bytes'] / 1e6:.1f}", "auto_file_mb": size(".sconce"), "all_file_mb": size(".all.sconce"),
+                            "same": "yes" if json.loads((folder / f"{name}.same.json").read_text())["mse"] == 0 else "NO"}
+    write("effects.json", "Indirect light with only what a scene calls for (auto) and with everything over the whole picture (all); 960x540, one ray a pixel",
+          ["bench/pages/effects_table.sh"],
+          [f"both plans in turns, the least time of each pass of {turns} turns of 5 frames; nothing else running",
+           "milliseconds of indirect light alone, without G-buffer, direct light and composition"], rows)
+    write("effects_passes.json", "Milliseconds a pass of the table of effects", ["bench/pages/effects_table.sh"], [], passes)
+
+
 def primary(arguments):
     """A scene's row: shares of rays from the eye, and three of its views as pictures, nearest to a probe first."""
     at, label, views = arguments[0], arguments[1], arguments[2].split(",")
@@ -393,7 +419,7 @@ def least_and_most(texts):
 
 
 if __name__ == "__main__":
-    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces,
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
              "primary": primary, "primaries": primaries, "moving": moving, "movings": movings}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
