@@ -26,14 +26,13 @@ void main()
     vec3 light = imageLoad(direct, at).rgb;
     Pixel p = readPixel(at);
     uint terms = termsOf(p) & kMade;
-    vec3 scattered = vec3(0.0), reflected = vec3(0.0);
-    if ((terms & (1u << kTermDiffuse)) != 0u)
-        scattered = imageLoad(diffuse, at).rgb * lobesAt(p.brdf, dot(p.normal, p.view)).diffuse;
-    float rays = shareOfRays(p.brdf.roughness);
-    if ((terms & (1u << kTermRough)) != 0u) reflected += (1.0 - rays) * imageLoad(rough, at).rgb;
-    if ((terms & (1u << kTermGlossy)) != 0u) reflected += rays * imageLoad(glossy, at).rgb;
-    if ((terms & (1u << kTermMirror)) != 0u) reflected += imageLoad(mirror, at).rgb;
-    imageStore(beauty, at, vec4(light + scattered + reflected, 1.0));
-    if (kDiffuseLayer) imageStore(diffuseLayer, at, vec4(scattered, 1.0));
-    if (kGlossyLayer) imageStore(glossyLayer, at, vec4(reflected, 1.0));
+    const vec3 none = vec3(0.0);
+    IndirectSent sent = IndirectSent(none, none);
+    if (terms != 0u)
+        sent = composeIndirect(p.brdf, dot(p.normal, p.view), frame.raysBelow, terms,
+                               (terms & (1u << kTermDiffuse)) != 0u ? imageLoad(diffuse, at).rgb : none, (terms & (1u << kTermRough)) != 0u ? imageLoad(rough, at).rgb : none,
+                               (terms & (1u << kTermGlossy)) != 0u ? imageLoad(glossy, at).rgb : none, (terms & (1u << kTermMirror)) != 0u ? imageLoad(mirror, at).rgb : none);
+    imageStore(beauty, at, vec4(light + sent.scattered + sent.reflected, 1.0));
+    if (kDiffuseLayer) imageStore(diffuseLayer, at, vec4(sent.scattered, 1.0));
+    if (kGlossyLayer) imageStore(glossyLayer, at, vec4(sent.reflected, 1.0));
 }

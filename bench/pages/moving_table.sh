@@ -35,7 +35,7 @@ print(",".join(f"{p + s * (q - p):.4g}" for p, q in zip(a, b)))' "$from" "$to" "
             else
                 python3 bench/pages/moving_shapes.py door "$hinge" 0 "$(python3 -c "print($i / max($poses - 1, 1))")" > "$pose.json"
             fi
-            [[ -f $pose.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --shapes "$pose.json" --spp "$spp" --bounces 8 --pixel-centre -o "$pose.ref.exr" --quiet > /dev/null
+            [[ -f $pose.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --shapes "$pose.json" --spp "$spp" --bounces 8 --pixel-centre --parts -o "$pose.ref.exr" --quiet > /dev/null
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --frames 3 -o "$pose.told.exr" --png "$pose.png" --json --quiet > "$pose.told.json"
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --drawn-only --frames 3 -o "$pose.untold.exr" --json --quiet > "$pose.untold.json"
             for picture in told untold; do
@@ -48,7 +48,7 @@ print(",".join(f"{p + s * (q - p):.4g}" for p, q in zip(a, b)))' "$from" "$to" "
     python3 bench/pages/bench_rows.py moving "$at" "$name, $count" "$poses"
 }
 {
-    run hall 24 "${HALL_EYE:-3,1.7,2}" "${HALL_TARGET:--2,0.9,-1}" "${HALL_FROM:--1.5,0,-1}" "${HALL_TO:-1,0,0.5}" "${HALL_DOOR:-0,0,-1.5}"
-    run sponza/Sponza.gltf 54 "${SPONZA_EYE:-4,1.8,0.3}" "${SPONZA_TARGET:--6,1.2,-0.2}" "${SPONZA_FROM:--1,0,-0.6}" "${SPONZA_TO:-1.5,0,0.4}" "${SPONZA_DOOR:-0,0,-1}"
+    run hall 24 1.6,1.7,7.9 8,1,5.1 4,0,7.2 6.5,0,5.6 5,0,5.8
+    run sponza/Sponza.gltf 54 -4,6.2,0.2 4,4.6,-0.6 -0.5,3.98,-1.5 1.5,3.98,1.5 1,3.98,-0.6
 } | tee "$out/rows.txt"
 python3 bench/pages/bench_rows.py movings "$out/rows.txt"

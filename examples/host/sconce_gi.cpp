@@ -72,10 +72,3 @@ std::array<VkImageView, 4> SconceGi::terms(VkImageView nothing) const
         if (!view) view = nothing;
     return views;
 }
-
-uint32_t SconceGi::made() const
-{
-    const auto bit = [](const sconce::IndirectLight::Output& output, uint32_t term) { return output.view ? 1u << term : 0u; };
-    return bit(light->diffuse(), sconce::gpu::kTermDiffuse) | bit(light->rough(), sconce::gpu::kTermRough) |
-           bit(light->glossy(), sconce::gpu::kTermGlossy) | bit(light->mirror(), sconce::gpu::kTermMirror);
-}

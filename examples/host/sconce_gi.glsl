@@ -5,16 +5,13 @@ layout(set = 0, binding = GI_BINDING + 1) uniform texture2D giRough;   // these 
 layout(set = 0, binding = GI_BINDING + 2) uniform texture2D giGlossy;
 layout(set = 0, binding = GI_BINDING + 3) uniform texture2D giMirror;
 
-/// Radiance that a pixel's surface sends to the eye of indirect light. An image is read where the pixel has its term and nowhere else.
+/// Radiance that a pixel's surface sends to the eye of indirect light.
 /// @param nv    cosine of the eye to the normal
-/// @param made  SconceGi::made()
+/// @param made  IndirectLight::made()
 void indirectLight(ivec2 at, BrdfSurface surface, float nv, uint made, out vec3 scattered, out vec3 reflected)
 {
-    uint terms = termsOf(surface, kRaysBelow) & made;
-    float rays = shareOfRays(surface.roughness, kRaysBelow);
-    scattered = reflected = vec3(0.0);
-    if ((terms & (1u << kTermDiffuse)) != 0u) scattered = lobesAt(surface, nv).diffuse * texelFetch(giDiffuse, at, 0).rgb;
-    if ((terms & (1u << kTermRough)) != 0u) reflected += (1.0 - rays) * texelFetch(giRough, at, 0).rgb;
-    if ((terms & (1u << kTermGlossy)) != 0u) reflected += rays * texelFetch(giGlossy, at, 0).rgb;
-    if ((terms & (1u << kTermMirror)) != 0u) reflected += texelFetch(giMirror, at, 0).rgb;
+    IndirectSent sent = composeIndirect(surface, nv, kRaysBelow, made, texelFetch(giDiffuse, at, 0).rgb, texelFetch(giRough, at, 0).rgb,
+                                        texelFetch(giGlossy, at, 0).rgb, texelFetch(giMirror, at, 0).rgb);
+    scattered = sent.scattered;
+    reflected = sent.reflected;
 }

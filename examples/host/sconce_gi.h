@@ -34,7 +34,7 @@ public:
     void record(VkCommandBuffer cmd, const Camera& camera, Convention convention, uint32_t seed);
     /// Diffuse, rough, glossy and mirror, in layout General, as sconce_gi.glsl binds them. @param nothing  in place of what is not made
     std::array<VkImageView, 4> terms(VkImageView nothing) const;
-    uint32_t made() const; // bits of those that are
+    uint32_t made() const { return light->made(); } // bits of those that are
     glm::vec3 sky() const { return field->info().sky; }
     /// Whether diffuse light has emitters and sky in it; else they are the host's to draw, as the sun is.
     bool hasAllDiffuse() const { return field->holdsSurfaceLight(); }

@@ -81,6 +81,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.gpu = gpu.shared_from_this();
     made.info = field.info;
     made.effects = field.effects;
+    made.sceneName = field.sceneName;
     made.headers = field.probes;
     made.groupCount = uint32_t(field.groups.size());
     struct Part
@@ -240,6 +241,11 @@ bool LightField::holdsSurfaceLight() const
 bool LightField::holdsPatches() const
 {
     return shared->patchesHeld;
+}
+
+const std::string& LightField::sceneName() const
+{
+    return shared->sceneName;
 }
 
 const std::vector<std::string>& LightField::effects() const

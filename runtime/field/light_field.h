@@ -22,6 +22,7 @@ struct LightField::State
     GpuImage octree;
     DescriptorSet set;
     std::vector<std::string> effects;
+    std::string sceneName;
     std::vector<gpu::ProbeHeader> headers; // of the probes
     uint64_t bytes = 0;
 

@@ -476,6 +476,13 @@ IndirectLight::Output IndirectLight::counts() const
     return outputOf(owned->countImage);
 }
 
+uint32_t IndirectLight::made() const
+{
+    const auto bit = [](const GpuImage& image, uint32_t term) { return image ? 1u << term : 0u; };
+    return bit(owned->diffuseImage, gpu::kTermDiffuse) | bit(owned->roughImage, gpu::kTermRough) |
+           bit(owned->glossyImage, gpu::kTermGlossy) | bit(owned->mirrorImage, gpu::kTermMirror);
+}
+
 uint64_t IndirectLight::deviceBytes() const
 {
     return owned->deviceBytes();

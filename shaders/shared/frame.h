@@ -76,6 +76,28 @@ uint termsOf(BrdfSurface s, float raysBelow)
     if (rays < 1.0) terms |= 1u << kTermRough;
     return terms;
 }
+
+/// What a pixel's surface sends to the eye of indirect light, radiance.
+struct IndirectSent
+{
+    vec3 scattered; // by its diffuse lobe
+    vec3 reflected;
+};
+
+/// Puts a pixel's terms together, as the images of IndirectLight hold them. Of a term that the pixel lacks, or that isn't made, anything may be given.
+/// @param nv    cosine of the eye to the normal
+/// @param made  IndirectLight::made()
+IndirectSent composeIndirect(BrdfSurface s, float nv, float raysBelow, uint made, vec3 diffuse, vec3 rough, vec3 glossy, vec3 mirror)
+{
+    uint terms = termsOf(s, raysBelow) & made;
+    float rays = shareOfRays(s.roughness, raysBelow);
+    IndirectSent sent = IndirectSent(vec3(0.0), vec3(0.0));
+    if ((terms & (1u << kTermDiffuse)) != 0u) sent.scattered = diffuse * lobesAt(s, nv).diffuse;
+    if ((terms & (1u << kTermRough)) != 0u) sent.reflected += (1.0 - rays) * rough;
+    if ((terms & (1u << kTermGlossy)) != 0u) sent.reflected += rays * glossy;
+    if ((terms & (1u << kTermMirror)) != 0u) sent.reflected += mirror;
+    return sent;
+}
 #endif
 
 #endif
