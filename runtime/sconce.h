@@ -79,10 +79,10 @@ public:
     std::array<uint32_t, 2> constants() const;
     const gpu::LightFieldInfo& info() const;
     uint64_t deviceBytes() const;
-    bool holdsRadiance() const;     // as rays need it
-    bool holdsPrefiltered() const;  // as rough reflections need it
-    bool holdsSurfaceLight() const; // diffuse light where surfaces are
-    bool holdsPatches() const;      // as diffuse light by patches needs them
+    bool holdsRadiance() const;           // as rays need it
+    bool holdsPrefiltered() const;        // as rough reflections need it
+    bool holdsSurfaceLight() const;       // diffuse light where surfaces are
+    bool holdsPatches() const;            // as diffuse light by patches needs them
     const std::string& sceneName() const; // Scene::name of what it was baked from, to tell whether it is the scene that is drawn
     /// Names of the effects that its scene called for when it was baked (SceneEffect::name).
     const std::vector<std::string>& effects() const;
@@ -252,9 +252,9 @@ public:
     ///               "diffuse fill", "glossy fill", "glossy denoise", "moving shapes", "lamp light"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
-    // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; composeIndirect() there makes
-    // a picture of them. RGBA32F.
-    uint32_t made() const; // bits 1 << gpu::kTermDiffuse... of the terms whose images aren't null
+    // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; composeIndirect() there
+    // makes a picture of them. RGBA32F.
+    uint32_t made() const;  // bits 1 << gpu::kTermDiffuse... of the terms whose images aren't null
     Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it
                             // is read from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or
                             // sky. a, of surface light: SurfaceLight::probes, what it is from
