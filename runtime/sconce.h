@@ -190,7 +190,7 @@ private:
 
 /// What moves, as indirect light sees it: it hides light from what is about it, and rays meet it. The host draws it, with shadows of its
 /// own lights; a figure is some capsules, a door a box. Its surface is lit as whatever no probe knows, by the light in the open about it.
-/// World, metres.
+/// Rays of RayTracer and of a host's own shaders don't meet it. World, metres.
 struct MovingShape
 {
     enum class Kind : uint32_t

@@ -16,6 +16,7 @@ layout(set = 1, binding = kMovingLightBinding, rgba32f) uniform image2D looked; 
 const float kFarthest = 16.0; // times its radius: a sphere hides 1/256 there
 const float kFading = 12.0;   // the same, from where on its share goes to 0
 const int kLobes = 3;         // along a capsule, of what is behind it
+const float kLeast = 1e-6;    // metres: a surface may go through a shape's middle
 const float kLowest = 0.05;   // cosine to the normal of a lobe's axis
 
 shared int low[3], high[3];      // of the tile's points, as ordered()
@@ -77,9 +78,9 @@ float shareOfHemisphere(MovingShapeData s, vec3 at, vec3 normal)
 /// What a shape covers of a plane that faces a point, square metres.
 float areaFrom(MovingShapeData s, vec3 at)
 {
-    vec3 across = abs(at) / length(at);
+    vec3 across = abs(at) / max(length(at), kLeast);
     return kBoxes ? 4.0 * dot(across, s.half_.yzx * s.half_.zxy)
-                                 : kBrdfPi * s.half_.x * s.half_.x + 4.0 * s.half_.x * s.half_.y * sqrt(max(1.0 - across.y * across.y, 0.0));
+                  : kBrdfPi * s.half_.x * s.half_.x + 4.0 * s.half_.x * s.half_.y * sqrt(max(1.0 - across.y * across.y, 0.0));
 }
 
 /// The first of a leaf's probes that nothing hides a point from.
@@ -113,7 +114,7 @@ vec3 hiddenBy(MovingShapeData s, vec3 from, uint asked, vec3 point, vec3 normal)
     {
         vec3 to = vec3(0.0, s.half_.y * (float(2 * i + 1) / float(lobes) - 1.0), 0.0) - from;
         if (lobes == 1) to = -from;
-        float away = length(to);
+        float away = max(length(to), kLeast);
         vec3 direction = fromShape(s, to / away);
         float cosine = dot(direction, normal);
         if (cosine < kLowest) direction = normalize(direction + (kLowest - cosine) * normal), cosine = kLowest;
@@ -127,7 +128,7 @@ vec3 hiddenBy(MovingShapeData s, vec3 from, uint asked, vec3 point, vec3 normal)
 float shareOfReflection(MovingShapeData s, vec3 at, Pixel p)
 {
     float area = areaFrom(s, at);
-    TangentFrame tangents = tangentFrame(p.normal), facing = tangentFrame(normalize(fromShape(s, -at)));
+    TangentFrame tangents = tangentFrame(p.normal), facing = tangentFrame(normalize(fromShape(s, -at) + kLeast * p.normal));
     vec3 middle = toTangent(tangents, fromShape(s, -at)), view = toTangent(tangents, p.view);
     vec3 u = toTangent(tangents, facing.tangent) * (0.5 * sqrt(area)), v = toTangent(tangents, facing.bitangent) * (0.5 * sqrt(area));
     view.z = max(view.z, 1e-4); // a shading normal may turn away from the eye

@@ -181,7 +181,18 @@ TEST_F(MovingShapeFrames, NothingIsLeftBehind)
               "Moving shapes: 4 shapes move, and this frame was made for 3; give Desc::movingShapes up to 256");
 }
 
-// As many as there may be: all in one place they hide what one hides... of the light of a lamp that is put out by any of them.
+// A host may be wrong about where its shapes are: surfaces that go through their middles have light, or none, but no NaN.
+TEST_F(MovingShapeFrames, SurfacesWithinShapesStayFinite)
+{
+    std::vector<MovingShape> within;
+    for (int i = 0; i < 30; ++i)
+        within.push_back(
+            shape(MovingShape::Kind(uint32_t(i) % 3), {-1.5f + 0.1f * float(i), 0.0f, -1.0f + 0.05f * float(i)}, vec3(0.4f), float(i)));
+    const RenderedFrame frame = draw({}, within);
+    for (const vec3& pixel : frame.beauty) ASSERT_TRUE(std::isfinite(pixel.x + pixel.y + pixel.z) && pixel.x >= 0.0f);
+}
+
+// As many as there may be, and one more.
 TEST_F(MovingShapeFrames, ManyShapesAreDrawnAndFinite)
 {
     std::vector<MovingShape> many;
