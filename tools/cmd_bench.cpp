@@ -276,6 +276,9 @@ void addBenchCommand(CLI::App& app, Context& context)
     bench->add_option("--knobs", options->plan.knobs, described("Sweep only these, separated by commas", words("all")))
         ->delimiter(',')
         ->type_name("LIST");
+    bench->add_option("--methods", options->plan.methods, described("Measure only these, separated by commas", words("all")))
+        ->delimiter(',')
+        ->type_name("LIST");
     bench->add_flag("--methods-only", options->plan.methodsOnly,
                     described("Measure every method's default point alone", words("with its knobs")));
     bench->add_flag("!--quick-grids", settings.judgeGrids,

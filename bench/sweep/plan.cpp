@@ -87,10 +87,22 @@ private:
     const PlanSettings& plan;
 };
 
+std::vector<std::string> methodNames()
+{
+    std::vector<std::string> names{PointSettings{}.method};
+    for (const Opponent& opponent : opponents()) names.push_back(opponent.name);
+    names.insert(names.end(), {kPathTracer, kFilteredPaths});
+    return names;
+}
+
 } // namespace
 
 Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
 {
+    const std::vector<std::string> methods = methodNames();
+    for (const std::string& name : settings.methods)
+        if (std::ranges::find(methods, name) == methods.end())
+            return Error{ErrorCode::badArgument, fmt::format("There is no method '{}'; there are: {}.", name, fmt::join(methods, ", "))};
     for (const std::string& name : settings.knobs)
         if (!findKnob(name) && name != kLevelKnob)
         {
@@ -100,7 +112,7 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         }
     Planner planner(settings);
     PointSettings ours = settings.ours;
-    ours.method = "ours";
+    ours.method = PointSettings{}.method;
     ours.probes = settings.probes;
     ours.frame.roughness = settings.roughness;
     planner.addDefault(ours);

@@ -102,18 +102,41 @@ std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& tria
     return places;
 }
 
-/// Sorts places by their keys in voxels of info.hidden.
-/// @return  where each key's begin, and their end
-std::vector<size_t> sortByKey(std::vector<Place>& places, const FieldData& lit, float offset)
+/// Keys of places in voxels of info.hidden.
+std::vector<uint32_t> keysOf(std::span<const Place> places, const FieldData& lit, float offset)
 {
-    parallelFor(places.size(),
-                [&](size_t i) { places[i].key = Text(lit).keyOf(places[i].point - offset * places[i].normal, places[i].normal); });
-    std::ranges::stable_sort(places, {}, &Place::key);
-    std::vector<size_t> first;
-    for (size_t i = 0; i < places.size(); ++i)
-        if (i == 0 || places[i].key != places[i - 1].key) first.push_back(i);
-    first.push_back(places.size());
-    return first;
+    constexpr size_t kAtOnce = 4096;
+    std::vector<uint32_t> keys(places.size());
+    parallelFor((places.size() + kAtOnce - 1) / kAtOnce,
+                [&](size_t part)
+                {
+                    Text text(lit);
+                    for (size_t i = part * kAtOnce; i < std::min(places.size(), (part + 1) * kAtOnce); ++i)
+                        keys[i] = text.keyOf(places[i].point - offset * places[i].normal, places[i].normal);
+                });
+    return keys;
+}
+
+/// Sorts places by their keys in voxels of info.hidden, those of one key as they come.
+/// @return  where each key's begin and end
+std::vector<std::pair<size_t, size_t>> sortByKey(std::vector<Place>& places, const FieldData& lit, float offset)
+{
+    const std::vector<uint32_t> keys = keysOf(places, lit, offset);
+    std::vector<uint64_t> order(keys.size()); // a key and an index: faster to sort than places
+    for (size_t i = 0; i < keys.size(); ++i) order[i] = uint64_t(keys[i]) << 32 | i;
+    std::ranges::sort(order);
+    std::vector<Place> sorted;
+    sorted.reserve(places.size());
+    std::vector<std::pair<size_t, size_t>> ranges;
+    for (const uint64_t next : order)
+    {
+        if (const auto key = uint32_t(next >> 32); sorted.empty() || sorted.back().key != key) ranges.emplace_back(sorted.size(), 0);
+        sorted.push_back(places[uint32_t(next)]);
+        sorted.back().key = uint32_t(next >> 32);
+        ranges.back().second = sorted.size();
+    }
+    places = std::move(sorted);
+    return ranges;
 }
 
 /// Mean light at some places of one key, by how open they are, since what lies between a floor and the ground that goes on below it nobody
@@ -188,13 +211,12 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles)
     const double side = double(lit.info.voxel) * lit.info.scale * double(1u << shift);
     HiddenPlaces found;
     found.places = hiddenPlaces(lit, triangles, side / std::sqrt(kPointsOfVoxel));
-    std::vector<size_t> first = sortByKey(found.places, lit, triangles.offset());
-    while (first.size() > kMostKeysOfProbe * lit.info.probeCount + 1 && lit.info.hidden + 1 < 1u << gpu::kHiddenShiftBits)
+    found.keys = sortByKey(found.places, lit, triangles.offset());
+    while (found.keys.size() > kMostKeysOfProbe * lit.info.probeCount && lit.info.hidden + 1 < 1u << gpu::kHiddenShiftBits)
     {
         ++lit.info.hidden;
-        first = sortByKey(found.places, lit, triangles.offset());
+        found.keys = sortByKey(found.places, lit, triangles.offset());
     }
-    for (size_t i = 0; i + 1 < first.size(); ++i) found.keys.emplace_back(first[i], first[i + 1]);
     found.shift = std::exchange(lit.info.hidden, 0u); // that look-ups do without
     return found;
 }

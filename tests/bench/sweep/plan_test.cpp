@@ -92,6 +92,21 @@ TEST(Plan, AKnobThatIsNotThereIsASentence)
     EXPECT_NE(plan.error().message.find("no knob 'colour'; there are: probes"), std::string::npos) << plan.error().message;
 }
 
+TEST(Plan, OnlyTheMethodsThatAreAskedFor)
+{
+    PlanSettings settings = ofSixteen();
+    settings.methods = {"ddgi", "path tracer"};
+    const auto plan = planPoints(settings);
+    ASSERT_TRUE(plan.ok());
+    std::set<std::string> methods;
+    for (const PlannedPoint& point : *plan) methods.insert(point.settings.method);
+    EXPECT_EQ(methods, (std::set<std::string>{"ddgi", "path tracer"}));
+    settings.methods = {"ours", "theirs"};
+    const auto none = planPoints(settings);
+    ASSERT_FALSE(none.ok());
+    EXPECT_NE(none.error().message.find("no method 'theirs'; there are: ours, ours-grid"), std::string::npos) << none.error().message;
+}
+
 // Two groups of which the second ran while the machine was twice as busy: on one scale they agree.
 TEST(ScaledPoints, BringGroupsToOneScale)
 {
