@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include <ImfChannelList.h>
@@ -16,6 +17,7 @@
 
 #include "base/numbers.h"
 #include "base/safe_file.h"
+#include "bench/reference/exr_guard.h"
 
 namespace sconce
 {
@@ -34,6 +36,20 @@ Error fileFailure(const std::filesystem::path& file, const std::string& doing, c
 {
     return Error{ErrorCode::fileError,
                  fmt::format("could not {} '{}': {}; check the path, the rights and the free space", doing, file.string(), why)};
+}
+
+/// Nothing where OpenEXR may be given the file.
+Status guardExr(const std::filesystem::path& file)
+{
+    std::error_code fault;
+    const uintmax_t size = std::filesystem::file_size(file, fault);
+    std::ifstream stream(file, std::ios::binary);
+    if (fault || !stream) return fileFailure(file, "read", fault ? fault.message() : "it can't be opened");
+    std::vector<char> start(std::min<uintmax_t>(size, ExrLimits::headerBytes));
+    if (!stream.read(start.data(), std::streamsize(start.size()))) return fileFailure(file, "read", "its first bytes can't be read");
+    const std::string problem = exrProblem(std::as_bytes(std::span(start)), size);
+    if (problem.empty()) return success();
+    return Error{ErrorCode::badInput, fmt::format("Picture '{}' is not read: {}.", file.string(), problem)};
 }
 
 /// OpenEXR writes here; what it wrote then becomes a file at once or not at all.
@@ -109,6 +125,7 @@ Status writeExr(const ImageSet& images, const std::filesystem::path& file)
 
 Result<ImageSet> readExr(const std::filesystem::path& file)
 {
+    if (const Status sound = guardExr(file); !sound) return sound.error();
     try
     {
         Imf::InputFile input(file.c_str());
@@ -158,7 +175,7 @@ Result<ImageSet> readExr(const std::filesystem::path& file)
     }
     catch (const std::exception& failure)
     {
-        return fileFailure(file, "read", failure.what());
+        return Error{ErrorCode::badInput, fmt::format("Picture '{}' is not read: {}; write it again.", file.string(), failure.what())};
     }
 }
 

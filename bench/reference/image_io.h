@@ -41,8 +41,8 @@ struct ImageSet
 /// whole or not at all (temporary name, then rename). Errors: badArgument, fileError.
 Status writeExr(const ImageSet& images, const std::filesystem::path& file);
 
-/// Reads what writeExr writes, and other EXR files: a single channel without colours becomes a layer of its own. Trusted files only:
-/// OpenEXR 3.1 has known faults on hostile ones. Errors: fileError, badInput.
+/// Reads what writeExr writes, and other EXR files of one part of scan lines, packed by RLE, ZIP or PIZ or not at all (exr_guard.h): a
+/// single channel without colours becomes a layer of its own. Errors: fileError, badInput.
 Result<ImageSet> readExr(const std::filesystem::path& file);
 
 /// 8-bit sRGB PNG of linear RGB in [0,1] (clamped, not tone-mapped here). Crash-safe as writeExr.
