@@ -6,10 +6,19 @@
 
 layout(scalar, push_constant) uniform Push { OctreePush push; };
 
-OctreeBuild build; // a copy, read once: the passes that use it begin with readSettings()
-void readSettings() { build = push.settings.inputs.build; }
-uint distanceWord(uint index) { return push.settings.inputs.distance.word[index]; }
-vec3 probeCentre(uint probe) { return push.settings.inputs.probes.probe[probe].centre; }
+OctreeBuild build; // copies, read once: the passes that use them begin with readSettings()
+MapWords maps;
+Probes probes;
+Candidates candidates;
+void readSettings()
+{
+    build = push.settings.inputs.build;
+    maps = push.settings.inputs.distance;
+    probes = push.settings.inputs.probes;
+    candidates = push.settings.inputs.candidates;
+}
+uint distanceWord(uint index) { return maps.word[index]; }
+vec3 probeCentre(uint probe) { return probes.probe[probe].centre; }
 uint surfelKey(uint slot) { return push.surfels.key[slot]; }
 uint indexIn(ivec3 at, ivec3 extent) { return uint(at.x) + uint(extent.x) * (uint(at.y) + uint(extent.y) * uint(at.z)); }
 uvec2 listOf(ivec3 node, ivec3 extent) { return push.from.list[indexIn(node, extent)]; }

@@ -21,7 +21,7 @@ void main()
     uint threads = uint(kBlock * kBlock * kBlock);
     for (uint i = thread; i < build.candidates; i += threads)
     {
-        int sight = sightOf(push.settings.inputs.candidates.candidate[list + i].x, block);
+        int sight = sightOf(candidates.candidate[list + i].x, block);
         if (sight != kSightNone) atomicOr(mayBits[i / 32u], 1u << (i % 32u));
         if (sight == kSightAll) atomicOr(allBits[i / 32u], 1u << (i % 32u));
     }
@@ -32,7 +32,7 @@ void main()
         for (uint word = 0u; word < i / 32u; ++word) place += bitCount(mayBits[word]);
         bool keeps = (mayBits[i / 32u] >> (i % 32u) & 1u) != 0u;
         uint all_ = (allBits[i / 32u] >> (i % 32u) & 1u) != 0u ? kSeesAll : 0u;
-        if (keeps) kept[place] = push.settings.inputs.candidates.candidate[list + i] | uvec2(all_, 0u);
+        if (keeps) kept[place] = candidates.candidate[list + i] | uvec2(all_, 0u);
         if (i + 1u == build.candidates) keptCount = place + uint(keeps);
     }
     barrier(); // every voxel ranks the whole list

@@ -162,19 +162,20 @@ Json guardOptions(const BenchSettings& settings, const PlanSettings& plan)
             {"surface_rays", plan.ours.surfaceRays}};
 }
 
+/// Throws what Json does where one isn't there or of another kind.
 void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings& plan)
 {
-    settings.width = options["size"][0];
-    settings.height = options["size"][1];
-    settings.rays = options["rays"];
-    settings.referencePaths = options["spp"];
+    settings.width = options.at("size").at(0);
+    settings.height = options.at("size").at(1);
+    settings.rays = options.at("rays");
+    settings.referencePaths = options.at("spp");
     settings.referenceUntil = options.value("until", knobs::referenceUntil.value); // older guards have none
-    settings.frames = options["frames"];
-    plan.probes = options["probes"];
-    plan.ours.resolution = options["resolution"];
-    plan.ours.bounces = options["bounces"];
+    settings.frames = options.at("frames");
+    plan.probes = options.at("probes");
+    plan.ours.resolution = options.at("resolution");
+    plan.ours.bounces = options.at("bounces");
     plan.ours.surfaceRays = options.value("surface_rays", knobs::surfaceRays.value); // older guards have none
-    plan.knobs = options["knobs"].get<std::vector<std::string>>();
+    plan.knobs = options.at("knobs").get<std::vector<std::string>>();
 }
 
 /// The points of a guarded scene, measured anew: ours and B0+, without pictures.
@@ -215,7 +216,17 @@ int checkGuard(const BenchRun& run)
     {
         BenchSettings settings = run.options.settings;
         PlanSettings plan;
-        setGuardOptions(scene["options"], settings, plan);
+        try
+        {
+            setGuardOptions(scene["options"], settings, plan);
+        }
+        catch (const Json::exception& problem)
+        {
+            return fail(
+                ErrorCode::badInput,
+                fmt::format("File '{}': the options of scene '{}' aren't whole ({}); write it again with `sconce bench --baseline`.",
+                            run.options.check, scene["name"].get<std::string>(), problem.what()));
+        }
         const Result<std::vector<Json>> points = guardedPoints(run, scene["source"], settings, plan);
         if (!points) return fail(points.error());
         for (const std::string& sentence : worsened(*guard, scene, *points)) json["worse"].push_back(sentence);

@@ -28,7 +28,7 @@ int runTune(const TuneOptions& options, const Context& context)
     {
         const std::string name = scene["name"];
         known += (known.empty() ? "" : ", ") + name;
-        if (name != options.scene && scene["source"] != options.scene) continue;
+        if (name != options.scene && scene.value("source", Json()) != options.scene) continue;
         const Result<Json> point = tune(scene["points"].get<std::vector<Json>>(), options.goal);
         if (!point && point.error().code == ErrorCode::badInput) // a goal that can't be met
         {

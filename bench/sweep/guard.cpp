@@ -1,7 +1,9 @@
 #include "bench/sweep/guard.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <initializer_list>
 #include <optional>
 
 #include <fmt/format.h>
@@ -62,6 +64,38 @@ Json guardedScene(const std::string& name, const std::string& source, const Json
     return scene;
 }
 
+namespace
+{
+
+bool holdsTexts(const Json& object, std::initializer_list<const char*> keys)
+{
+    return object.is_object() && std::ranges::all_of(keys, [&](const char* key) { return object.value(key, Json()).is_string(); });
+}
+
+/// Whether worsened() finds what it reads.
+bool isGuard(const Json& json)
+{
+    if (!json.is_object() || json.value("guard", Json()) != kGuardVersion) return false;
+    const Json margins = json.value("margins", Json()), scenes = json.value("scenes", Json());
+    const auto isMargin = [](const Json& margin) {
+        return holdsTexts(margin, {"figure"}) && margin.value("relative", Json()).is_number() &&
+               margin.value("absolute", Json()).is_number();
+    };
+    const auto isPoint = [](const Json& point)
+    {
+        return holdsTexts(point, {"id"}) &&
+               std::ranges::all_of(point.items(), [](const auto& item) { return item.key() == "id" || item.value().is_number(); });
+    };
+    const auto isScene = [&](const Json& scene)
+    {
+        return holdsTexts(scene, {"name", "source"}) && scene.value("options", Json()).is_object() &&
+               scene.value("points", Json()).is_array() && std::ranges::all_of(scene["points"], isPoint);
+    };
+    return margins.is_array() && scenes.is_array() && std::ranges::all_of(margins, isMargin) && std::ranges::all_of(scenes, isScene);
+}
+
+} // namespace
+
 Result<Json> readGuard(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
@@ -69,8 +103,7 @@ Result<Json> readGuard(const std::filesystem::path& file)
         return Error{ErrorCode::fileError,
                      fmt::format("File '{}' can't be read; give a baseline of `sconce bench --baseline`.", file.string())};
     Json json = Json::parse(stream, nullptr, false);
-    if (json.is_discarded() || !json.is_object() || json.value("guard", 0) != kGuardVersion || !json.contains("scenes") ||
-        !json.contains("margins"))
+    if (!isGuard(json))
         return Error{ErrorCode::badInput,
                      fmt::format("File '{}' is no baseline of version {}; write it again with `sconce bench --baseline`.", file.string(),
                                  kGuardVersion)};

@@ -144,13 +144,37 @@ Status writeResults(const Json& results, const std::filesystem::path& folder)
     return writeText(folder / "results.csv", resultsCsv(results));
 }
 
+namespace
+{
+
+/// Whether scenes and points can be told apart, and each point be asked for its figures.
+bool isResults(const Json& json)
+{
+    if (!json.is_object() || json.value("schema", Json()) != kSchema) return false;
+    const Json scenes = json.value("scenes", Json());
+    const auto holdsText = [](const Json& object, const char* key) { return object.value(key, Json()).is_string(); };
+    const auto isPoint = [&](const Json& point)
+    {
+        return point.is_object() && holdsText(point, "id") && holdsText(point, "method") && holdsText(point, "knob") &&
+               holdsText(point, "value");
+    };
+    const auto isScene = [&](const Json& scene)
+    {
+        return scene.is_object() && holdsText(scene, "name") && scene.value("points", Json()).is_array() &&
+               std::ranges::all_of(scene["points"], isPoint);
+    };
+    return scenes.is_array() && std::ranges::all_of(scenes, isScene);
+}
+
+} // namespace
+
 Result<Json> readResults(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
     if (!stream)
         return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read; give the results.json of a bench.", file.string())};
     Json json = Json::parse(stream, nullptr, false);
-    if (json.is_discarded() || !json.is_object() || json.value("schema", Json()) != kSchema || !json.contains("scenes"))
+    if (!isResults(json))
         return Error{ErrorCode::badInput,
                      fmt::format("File '{}' is no results.json of schema {}; run `sconce bench` again.", file.string(), kSchema)};
     return json;

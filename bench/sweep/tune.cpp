@@ -105,7 +105,7 @@ Result<PointSettings> loadQuality(const std::string& fileOrLevel)
     std::ifstream stream(fileOrLevel);
     if (!stream) return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read.", fileOrLevel)};
     const Json json = Json::parse(stream, nullptr, false);
-    if (json.is_discarded() || !json.is_object() || json.value("quality", 0) != kQualityVersion || !json.contains("settings"))
+    if (json.is_discarded() || !json.is_object() || json.value("quality", Json()) != kQualityVersion || !json.contains("settings"))
         return Error{ErrorCode::badInput, fmt::format("File '{}' holds no settings of `sconce tune`.", fileOrLevel)};
     Result<PointSettings> settings = settingsFrom("ours", json["settings"]);
     if (!settings) return Error{settings.error().code, fmt::format("File '{}': {}", fileOrLevel, settings.error().message)};

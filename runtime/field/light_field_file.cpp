@@ -209,6 +209,13 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
     return {};
 }
 
+constexpr float kFarthest = 1e6f; // field units, of which a scene is about one across: beyond it sums and squares stay no numbers
+
+bool isNear(vec3 place)
+{
+    return glm::all(glm::lessThanEqual(glm::abs(place), vec3(kFarthest))); // not NaN
+}
+
 /// What is wrong with the octree; empty when every descent ends at a leaf inside the texture that names probes which are there.
 std::string octreeProblem(const FieldData& field)
 {
@@ -217,7 +224,7 @@ std::string octreeProblem(const FieldData& field)
     if (glm::ivec3(i.topCells) != tree.topCells || i.topShift != tree.topShift || glm::uvec3(i.bricks) != tree.bricks ||
         i.marker != tree.marker || glm::vec3(i.boundsLow) != tree.boundsLow || i.voxel != tree.voxel)
         return "its octree disagrees with its info";
-    if (!(tree.voxel > 0.0f) || !std::isfinite(tree.voxel)) return "its octree's voxel is not a positive number";
+    if (!(tree.voxel > 0.0f && tree.voxel <= kFarthest)) return "its octree's voxel is not a size that a voxel has";
     if (tree.topShift < 0 || tree.topShift > 15) return fmt::format("its octree's depth {} is not from 0 to 15", tree.topShift);
     uint64_t topBricks = 1;
     for (int axis = 0; axis < 3; ++axis)
@@ -341,19 +348,27 @@ std::string liveProblem(const FieldData& field)
 std::string contentProblem(const FieldData& field)
 {
     const gpu::LightFieldInfo& i = field.info;
-    if (!finite(i.origin) || !(i.scale > 0.0f) || !std::isfinite(i.scale) || !finite(i.boundsLow) || !finite(i.boundsHigh) ||
-        !finite(i.sky))
+    if (!finite(i.origin) || !(i.scale > 0.0f) || !std::isfinite(i.scale) || !finite(i.sky))
         return "its info holds a number that is not finite";
+    for (const vec3& place : {vec3(i.boundsLow), vec3(i.boundsHigh), vec3(i.sceneLow), vec3(i.sceneHigh), vec3(i.gridOrigin),
+                              vec3(i.gridStep), vec3(i.diagonal)})
+        if (!isNear(place)) return "its bounds lie where no scene's do";
+    if (i.diagonal < 0.0f) return "its diagonal is negative";
     for (size_t p = 0; p < field.probes.size(); ++p)
-        if (!finite(field.probes[p].centre)) return fmt::format("the centre of probe {} is not finite", p);
-    if (!finite(i.sceneLow) || !finite(i.sceneHigh) || !(i.diagonal >= 0.0f) || !std::isfinite(i.diagonal))
-        return "its scene bounds are not finite";
+    {
+        const gpu::ProbeHeader& probe = field.probes[p];
+        if (!isNear(probe.centre) || !isNear(probe.influenceLow) || !isNear(probe.influenceHigh) ||
+            !isNear({probe.freeRadius, probe.farthest, probe.harmonic}))
+            return fmt::format("the centre or the distances of probe {} lie where no scene's do", p);
+    }
     if (!field.why.empty() && field.why.size() != field.info.probeCount)
         return fmt::format("it says why {} probes are where they are, and has {}", field.why.size(), field.info.probeCount);
     if (std::string problem = lampProblem(field); !problem.empty()) return problem;
     if (std::string problem = groupProblem(field); !problem.empty()) return problem;
     if (std::string problem = liveProblem(field); !problem.empty()) return problem;
-    const bool grid = i.gridX != 0 && uint64_t(i.gridX) * i.gridY * i.gridZ == i.probeCount;
+    const bool grid = i.gridX != 0;
+    if (grid && (std::max({i.gridX, i.gridY, i.gridZ}) > kMostProbes || uint64_t(i.gridX) * i.gridY * i.gridZ != i.probeCount))
+        return fmt::format("its grid of {}x{}x{} has not the {} probes that there are", i.gridX, i.gridY, i.gridZ, i.probeCount);
     const size_t texels = size_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount;
     for (size_t texel = 0; texel < std::min(texels, field.surfaceLight.size()); ++texel)
         if (const uint32_t word = field.surfaceLight[texel]; word >= gpu::kRefinedWord && word - gpu::kRefinedWord >= i.refinedTexels)

@@ -53,9 +53,10 @@ SCONCE_FN uint faceWord(uint probe, int face, int x, int y)
 }
 
 /// Whether a probe's map shows nothing in front of a point.
-SCONCE_FN bool probeSees(uint probe, vec3 point)
+/// @param eye  the probe's centre, which is read once for all points
+SCONCE_FN bool probeSees(uint probe, vec3 eye, vec3 point)
 {
-    SCONCE_EXACT vec3 p = point - probeCentre(probe);
+    SCONCE_EXACT vec3 p = point - eye;
     int face = dominantFace(p);
     vec3 f = faceCoordinates(face, p);
     if (!(f.z > real(1e-6))) return true; // the centre itself
@@ -134,6 +135,7 @@ SCONCE_CONST uint kSeesAll = 0x80000000u; // of a candidate's probe: kSightAll o
 /// By the cells of the chain that the block covers: its nearest point lies behind the far bounds of all, or its farthest before the near bounds.
 SCONCE_FN int sightOf(uint probe, ivec3 block)
 {
+    vec3 eye = probeCentre(probe);
     real nearest = real(0.0); // largest q of the block
     real farthest = real(1e30);
     vec2 low = vec2(real(build.faceSize), real(build.faceSize));
@@ -142,7 +144,7 @@ SCONCE_FN int sightOf(uint probe, ivec3 block)
     for (int corner = 0; corner < 8; ++corner)
     {
         vec3 at = vec3(kBlock * block) - real(0.5) + real(kBlock + 1) * vec3(real(corner & 1), real((corner >> 1) & 1), real(corner >> 2));
-        vec3 p = vec3(build.low) + build.voxel * at - probeCentre(probe);
+        vec3 p = vec3(build.low) + build.voxel * at - eye;
         int own = dominantFace(p);
         if (corner > 0 && own != face) return kSightUnsure;
         face = own;
@@ -216,6 +218,7 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
         uvec2 candidate = candidateOf(c);
         bool seesAll = (candidate.x & kSeesAll) != 0u;
         candidate.x &= ~kSeesAll;
+        vec3 eye = probeCentre(candidate.x);
         uint bits = seesAll ? (1u << kFreeSamples) - 1u : 0u;
         for (int sample_ = 0; sample_ < kFreeSamples && !seesAll; ++sample_)
         {
@@ -224,14 +227,14 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
             if (sample_ == 8) corner = vec3(real(0.0), real(0.0), real(0.0));
             SCONCE_EXACT real reach = kSpread * build.voxel;
             SCONCE_EXACT vec3 point = centre + reach * corner;
-            if (probeSees(candidate.x, point)) bits |= 1u << sample_;
+            if (probeSees(candidate.x, eye, point)) bits |= 1u << sample_;
         }
         for (uint i = 0u; i < samples; ++i)
         {
-            SCONCE_EXACT vec3 to = probeCentre(candidate.x) - surfaces[i];
+            SCONCE_EXACT vec3 to = eye - surfaces[i];
             vec3 n = normals[i];
             SCONCE_EXACT real height = to.x * n.x + to.y * n.y + to.z * n.z;
-            if (height > real(0.0) && (seesAll || probeSees(candidate.x, surfaces[i]))) bits |= 1u << (uint(kFreeSamples) + i);
+            if (height > real(0.0) && (seesAll || probeSees(candidate.x, eye, surfaces[i]))) bits |= 1u << (uint(kFreeSamples) + i);
         }
         if (bits == 0u) continue;
         seenBits[found] = bits;

@@ -106,7 +106,8 @@ TEST(BuildOctree, WhatAChainTellsOfABlockIsSoOfItsPoints)
                 for (int point = 0; point < 40 && sight != text.kSightUnsure; ++point)
                 {
                     const vec3 at = vec3(gpu::kBlock * block) + vec3(within(random), within(random), within(random));
-                    ASSERT_EQ(text.probeSees(probe, build.low + build.voxel * at), sight == text.kSightAll) << faces << ", block " << i;
+                    ASSERT_EQ(text.probeSees(probe, text.probeCentre(probe), build.low + build.voxel * at), sight == text.kSightAll)
+                        << faces << ", block " << i;
                 }
             }
         for (const int sight : {text.kSightNone, text.kSightAll})

@@ -70,7 +70,24 @@ TEST(ExrGuard, SizesThatItsBytesCannotHoldAreRefused)
     EXPECT_NE(sized(0, 0, 16383, 16383).find("don't fit"), std::string::npos);
     const size_t channels = valueOf(good, "channels", "chlist");
     const size_t sampling = good.find('\0', channels) + 1 + 8; // after the first channel's name, type and linearity
-    EXPECT_NE(problemOf(with(good, sampling, 2)).find("channels of full resolution"), std::string::npos);
+    EXPECT_NE(problemOf(with(good, sampling, 2)).find("attribute 'channels'"), std::string::npos);
+}
+
+// OpenEXR 3.1 took 1.9 GB for a header of 300 bytes.
+TEST(ExrGuard, ValuesOfAnotherSizeThanTheirTypesAreRefused)
+{
+    const std::string good = picture();
+    for (const auto& [name, type] : {std::pair("dataWindow", "box2i"), {"compression", "compression"}, {"pixelAspectRatio", "float"}})
+    {
+        const size_t value = valueOf(good, name, type);
+        const auto size = uint32_t(uint8_t(good[value - 4]));
+        std::string longer = with(good, value - 4, size + 1);
+        longer.insert(value + size, 1, '\0');
+        EXPECT_NE(problemOf(longer).find("attribute '" + std::string(name) + "' is damaged"), std::string::npos) << problemOf(longer);
+    }
+    std::string other = good;
+    other.replace(other.find("pixelAspectRatio") + 17, 5, "thing");
+    EXPECT_NE(problemOf(other).find("of a kind that isn't read"), std::string::npos) << problemOf(other);
 }
 
 TEST(ExrGuard, AHeaderThatIsCutShortIsRefused)
@@ -85,7 +102,7 @@ TEST(ExrGuard, NoChangedByteOfAHeaderEndsTheProgram)
 {
     const TestFolder folder;
     const std::string good = picture();
-    for (size_t at = 0; at < 400; ++at)
+    for (size_t at = 0; at < good.size(); ++at)
         for (const char flip : {char(1), char(0x80)})
         {
             testing_support::writeText(folder / "a.exr", with(good, at, char(good[at] ^ flip)));

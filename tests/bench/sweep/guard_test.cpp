@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/files.h"
+
 namespace sconce
 {
 namespace
@@ -65,6 +67,16 @@ TEST(Guard, WhatIsMissingOrWrongIsWorse)
 TEST(Guard, AnotherFileIsASentence)
 {
     EXPECT_NE(readGuard("nowhere.json").error().message.find("nowhere.json"), std::string::npos);
+    const testing_support::TestFolder folder;
+    for (const char* text : {"{", "[]", "{\"guard\": \"one\"}", "{\"guard\": 1, \"margins\": [], \"scenes\": [5]}",
+                             "{\"guard\": 1, \"margins\": [{\"figure\": \"reads\"}], \"scenes\": []}",
+                             "{\"guard\": 1, \"margins\": [], \"scenes\": [{\"name\": \"a\", \"source\": \"a\", \"options\": {}}]}"})
+    {
+        testing_support::writeText(folder / "a.json", text);
+        const auto refused = readGuard(folder / "a.json");
+        ASSERT_FALSE(refused.ok()) << text;
+        EXPECT_NE(refused.error().message.find("no baseline of version 1"), std::string::npos) << refused.error().message;
+    }
 }
 
 } // namespace

@@ -108,7 +108,9 @@ TEST(Results, WhatIsNoResultsFileIsASentence)
 {
     const TestFolder folder;
     EXPECT_EQ(readResults(folder / "none.json").error().code, ErrorCode::fileError);
-    for (const char* text : {"", "[]", "{", "{\"schema\": 2}", "{\"schema\": 1, \"scenes\": []}", "{\"scenes\": []}"})
+    for (const char* text :
+         {"", "[]", "{", "{\"schema\": 2}", "{\"schema\": 1, \"scenes\": []}", "{\"scenes\": []}", "{\"schema\": 2, \"scenes\": 7}",
+          "{\"schema\": 2, \"scenes\": [{\"name\": \"a\", \"points\": [{\"id\": 3}]}]}"})
     {
         writeText(folder / "a.json", text);
         const auto refused = readResults(folder / "a.json");

@@ -346,6 +346,37 @@ TEST_F(LightFieldFile, FieldsThatContradictThemselvesAreNotWritten)
     EXPECT_EQ(filesInFolder(), 0u);
 }
 
+// Numbers that are finite and still make others that are not, and grids that a look-up would leave.
+TEST_F(LightFieldFile, PlacesBeyondAnySceneAreRefused)
+{
+    const auto refusal = [&](const auto& change)
+    {
+        FieldData field = smallField();
+        change(field);
+        const Status saved = saveField(field, file);
+        return saved ? "" : saved.error().message;
+    };
+    EXPECT_EQ(refusal([](FieldData& field) { field.probes[2].centre.x = 1e6f; }), "");
+    EXPECT_NE(refusal([](FieldData& field) { field.probes[2].centre.x = 1.1e6f; }).find("probe 2"), std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.probes[0].harmonic = 1e38f; }).find("probe 0"), std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.probes[0].influenceHigh.z = std::numeric_limits<float>::quiet_NaN(); }).find("probe 0"),
+              std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.info.sceneHigh.y = 1e38f; }).find("bounds"), std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.info.diagonal = -1.0f; }).find("negative"), std::string::npos);
+    EXPECT_NE(refusal([](FieldData& field) { field.info.voxel = field.octree.voxel = 1e38f; }).find("voxel"), std::string::npos);
+    EXPECT_EQ(refusal([](FieldData& field) { field.info.gridX = 3, field.info.gridY = field.info.gridZ = 1; }), "");
+    EXPECT_NE(refusal([](FieldData& field) { field.info.gridX = 2, field.info.gridY = field.info.gridZ = 1; }).find("2x1x1"),
+              std::string::npos);
+    EXPECT_NE(refusal(
+                  [](FieldData& field)
+                  {
+                      field.info.gridX = field.info.gridY = 1u << 31; // 2^64 times 3 is 0 of 64 bits
+                      field.info.gridZ = 4 * 3;
+                  })
+                  .find("grid of"),
+              std::string::npos);
+}
+
 // A field without groups has not a byte of them: neither a section nor a line.
 TEST_F(LightFieldFile, LightGroupsComeBackAndAreNoPartOfOtherFields)
 {
