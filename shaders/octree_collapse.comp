@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "octree_build.glsl"
 
-// Octree pass 4: the lists of one level's nodes from those of their children, one thread a node. `from` -> `to`.
+// Octree pass 5: the lists of one level's nodes from those of their children, one thread a node. `from` -> `to`.
 // Dispatch: ceil(size / 4) thrice.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "octree_build.glsl"
 
-// Octree pass 3: a voxel that no probe sees takes a neighbour's list. `from` -> `to`. Dispatch: ceil(size / 4) thrice.
+// Octree pass 4: a voxel that no probe sees takes a neighbour's list. `from` -> `to`. Dispatch: ceil(size / 4) thrice.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 void main()

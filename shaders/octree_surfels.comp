@@ -14,5 +14,10 @@ void main()
     vec3 position, normal;
     if (!surfelOf(number, position, normal)) return;
     uint slot = surfelSlot(position, normal);
-    if (slot != kNoSurfel) atomicMin(push.surfels.key[slot], number * kKeyFactor);
+    if (slot == kNoSurfel) return;
+    atomicMin(push.surfels.key[slot], number * kKeyFactor);
+    uint index = slot / kSurfelSlots;
+    uvec3 count = uvec3(build.count);
+    ivec3 voxel = ivec3(index % count.x, index / count.x % count.y, index / count.x / count.y);
+    atomicOr(push.blocks.block[indexIn(voxel / kBlock, (build.count + kBlock - 1) / kBlock)], 1u);
 }

@@ -26,6 +26,7 @@ struct Text
     static constexpr uint kNoSurfel = gpu::kNoSurfel;
     static constexpr uint kNoList = gpu::kNoList;
     static constexpr uint kSurfelSlots = gpu::kSurfelSlots;
+    static constexpr uint kSeesAll = gpu::kSeesAll;
     static constexpr int kRanked = gpu::kRanked;
     static constexpr int kBlock = gpu::kBlock;
 
@@ -38,6 +39,7 @@ struct Text
 
     uint distanceWord(uint index) const { return maps.distance[index]; }
     vec3 probeCentre(uint probe) const { return maps.probes[probe].centre; }
+    bool holdsSurfels() const { return true; }
     uint candidateCount() const { return uint(kept.size()); }
     uvec2 candidateOf(uint i) const { return kept[i]; }
     uint surfelKey(uint slot) const { return surfels[slot]; }

@@ -14,7 +14,9 @@ SCONCE_STRUCTS_BEGIN
 const uint kSurfelSlots = 16u; // surface samples a voxel keeps: one an octant of the voxel and side of the surface
 const int kBlock = 4;                // voxels a side of the blocks whose candidates are culled together; a region holds whole blocks
 const uint kMostCandidates = 256u;   // of a region
+const uint kSeesAll = 0x80000000u;   // of a candidate of a block: nothing is before any point there
 const uint kNoSurfel = 0xffffffffu;
+const uint kWithSurfelsId = 0u;  // specialization constant of the ranking: whether its blocks hold surface samples
 const uint kNoList = 0xffffffffu; // first word of a voxel that no probe sees (second word the same), or of a node whose children differ (0)
 
 /// Where the voxels lie and whom they may ask. Field space.
@@ -52,6 +54,8 @@ SCONCE_CHECK_SIZE(OctreeInputs, 112);
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Inputs { OctreeInputs inputs; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SurfelKeys { uint key[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Lists { uvec2 list[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Blocks { uint block[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Sights { uint word[]; };
 #endif
 
 struct OctreePush
@@ -60,12 +64,14 @@ struct OctreePush
     SCONCE_ADDRESS(SurfelKeys) surfels; // [voxel][kSurfelSlots]
     SCONCE_ADDRESS(Lists) from;
     SCONCE_ADDRESS(Lists) to;
-    uint first;  // of the samples, or blocks of voxels, of this dispatch
-    uint count;  // samples
+    SCONCE_ADDRESS(Blocks) blocks; // [block] 1 where it holds a surface sample; for the ranking the numbers of blocks
+    SCONCE_ADDRESS(Sights) sights; // [block of this dispatch][1 + build.candidates]: how many follow, and places in its region's list, with kSeesAll
+    uint first;  // of the samples, or of `blocks`, of this dispatch
+    uint count;  // samples, or blocks
     ivec3 size;  // nodes of the level written
     uint unused; // to a multiple of 8
 };
-SCONCE_CHECK_SIZE(OctreePush, 56);
+SCONCE_CHECK_SIZE(OctreePush, 72);
 
 SCONCE_STRUCTS_END
 #endif

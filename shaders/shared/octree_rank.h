@@ -1,6 +1,6 @@
 // Which probes a voxel lists: the judging and ranking that builds the octree. Shared text: GLSL, or C++ inside a struct that names `real`,
 // holds `build` (OctreeBuild) and defines uint distanceWord(uint), vec3 probeCentre(uint), uint surfelKey(uint),
-// uint candidateCount() and uvec2 candidateOf(uint) (those of the voxel's block: of its region, those that sightOf leaves, in order, with kSeesAll) and
+// bool holdsSurfels() (false: no slot of the voxel's block has one), uint candidateCount() and uvec2 candidateOf(uint) (those of the voxel's block: of its region, those that sightOf leaves, in order, with kSeesAll) and
 // uvec2 listOf(ivec3 node, ivec3 size): a list of the level read, which has `size` nodes.
 //
 // The same bytes on every device: only sums, products, comparisons and integers, each rounded once (SCONCE_EXACT), and no division, root
@@ -130,7 +130,6 @@ SCONCE_FN uint regionOf(ivec3 voxel)
 SCONCE_CONST int kSightUnsure = 0;
 SCONCE_CONST int kSightNone = 1; // it sees nothing there
 SCONCE_CONST int kSightAll = 2;  // nothing is before any point there
-SCONCE_CONST uint kSeesAll = 0x80000000u; // of a candidate's probe: kSightAll of the block
 
 /// By the cells of the chain that the block covers: its nearest point lies behind the far bounds of all, or its farthest before the near bounds.
 SCONCE_FN int sightOf(uint probe, ivec3 block)
@@ -193,7 +192,7 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
     vec3 surfaces[kSurfelSlots];
     vec3 normals[kSurfelSlots];
     uint samples = 0u;
-    for (uint slot = 0u; slot < kSurfelSlots; ++slot)
+    for (uint slot = 0u; slot < kSurfelSlots && holdsSurfels(); ++slot)
     {
         uint key = surfelKey(index * kSurfelSlots + slot);
         if (key == kNoSurfel) continue;
@@ -229,7 +228,7 @@ SCONCE_FN uvec2 rankVoxel(ivec3 voxel)
             SCONCE_EXACT vec3 point = centre + reach * corner;
             if (probeSees(candidate.x, eye, point)) bits |= 1u << sample_;
         }
-        for (uint i = 0u; i < samples; ++i)
+        for (uint i = 0u; i < samples && holdsSurfels(); ++i)
         {
             SCONCE_EXACT vec3 to = eye - surfaces[i];
             vec3 n = normals[i];

@@ -26,12 +26,13 @@ struct Text
     using real = float;
     using uint = uint32_t;
     using vec2f = glm::vec2;
-    static constexpr uint kNoSurfel = gpu::kNoSurfel, kNoList = gpu::kNoList, kSurfelSlots = gpu::kSurfelSlots;
+    static constexpr uint kNoSurfel = gpu::kNoSurfel, kNoList = gpu::kNoList, kSurfelSlots = gpu::kSurfelSlots, kSeesAll = gpu::kSeesAll;
     static constexpr int kRanked = gpu::kRanked, kBlock = gpu::kBlock;
     const gpu::OctreeBuild& build;
     const FieldData& field;
     uint distanceWord(uint index) const { return field.distance[index]; }
     vec3 probeCentre(uint probe) const { return field.probes[probe].centre; }
+    bool holdsSurfels() const { return false; }
     uint candidateCount() const { return 0; }
     uvec2 candidateOf(uint) const { return {}; }
     uint surfelKey(uint) const { return kNoSurfel; }
