@@ -84,7 +84,9 @@ bool isGuard(const Json& json)
     const auto isPoint = [](const Json& point)
     {
         return holdsTexts(point, {"id"}) &&
-               std::ranges::all_of(point.items(), [](const auto& item) { return item.key() == "id" || item.value().is_number(); });
+               std::ranges::all_of(
+                   point.items(), [](const auto& item)
+                   { return item.key() == "id" || item.key() == "wrong" ? item.value().is_string() : item.value().is_number(); });
     };
     const auto isScene = [&](const Json& scene)
     {
@@ -129,7 +131,7 @@ std::vector<std::string> worsened(const Json& guard, const Json& scene, const st
         for (const Json& margin : guard["margins"])
         {
             const std::string name = margin["figure"];
-            if (!before.contains(name)) continue;
+            if (!before.value(name, Json()).is_number()) continue;
             const double was = before[name];
             const double most = was * (1.0 + margin["relative"].get<double>()) + margin["absolute"].get<double>();
             const auto is = figureOf(*now, name);
