@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -252,9 +253,11 @@ Result<Bytes> readRegularFile(const fs::path& file, const std::string& what)
     if (size > GltfLimits::fileBytes)
         return bad(fmt::format("{} is {} of {} bytes; the limit is 2 GiB, split it.", what, file.string(), size));
     Bytes bytes(size);
+    errno = 0;
     std::ifstream in(file, std::ios::binary);
     if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)) && size > 0)
-        return unreadable(fmt::format("{} can't be read: {} refused; check its permissions.", what, file.string()));
+        return unreadable(fmt::format("{} can't be read: {} refused ({}); check its permissions.", what, file.string(),
+                                      errno != 0 ? std::strerror(errno) : "it has become shorter"));
     return bytes;
 }
 

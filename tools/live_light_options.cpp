@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/listed.h"
+#include "base/parsed_json.h"
 #include "runtime/field/live_light.h"
 #include "tools/common.h"
 #include "tools/json_numbers.h"
@@ -67,7 +68,9 @@ Result<std::vector<Light>> lightsIn(const std::filesystem::path& file)
 {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return Error{ErrorCode::fileError, fmt::format("Cannot read lights '{}'.", file.string())};
-    const Json json = Json::parse(stream, nullptr, false);
+    const auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed) return parsed.error();
+    const Json& json = *parsed;
     const auto wrong = [&](const std::string& what) {
         return Error{ErrorCode::badInput, fmt::format("Lights '{}': {}.", file.string(), what)};
     };
@@ -168,6 +171,7 @@ Result<std::vector<SunPlace>> sunPath(const std::filesystem::path& file, uint32_
         if (!lines.empty() && !((*numbers)[0] > lines.back()[0])) return wrong(line, "its time is not after the line's before");
         lines.push_back(std::move(*numbers));
     }
+    if (stream.bad()) return Error{ErrorCode::fileError, fmt::format("Cannot read the sun's path '{}' to its end.", file.string())};
     if (lines.empty()) return wrong(2, "there is no place of the sun; give one line at least");
     std::vector<SunPlace> places;
     for (uint32_t i = 0; i < count; ++i)

@@ -7,6 +7,18 @@
 #include "tools/common.h"
 #include "tools/version.h"
 
+namespace
+{
+
+/// What a command has answered is on stdout, or the command has failed: a full disk swallows it without a word.
+int answered(int code)
+{
+    if (std::cout.flush() || code != sconce::tools::exitOk) return code;
+    return sconce::tools::fail(sconce::ErrorCode::fileError, "stdout could not be written whole; free some space or send it elsewhere");
+}
+
+} // namespace
+
 int main(int argc, char** argv)
 {
     using namespace sconce::tools;
@@ -42,14 +54,14 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return app.exit(error) == 0 ? exitOk : exitUsage;
+        return answered(app.exit(error) == 0 ? exitOk : exitUsage);
     }
     catchInterrupts();
     try
     {
         const int code = context.action();
         endProgress();
-        return code;
+        return answered(code);
     }
     catch (const std::bad_alloc&)
     {

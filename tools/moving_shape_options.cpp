@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/parsed_json.h"
 #include "runtime/frame/moving_shapes.h"
 #include "tools/common.h"
 #include "tools/json_numbers.h"
@@ -71,7 +72,9 @@ Result<std::vector<MovingShape>> MovingShapeOptions::read() const
     if (file.empty()) return shapes;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return Error{ErrorCode::fileError, fmt::format("Cannot read shapes '{}'.", file)};
-    const Json json = Json::parse(stream, nullptr, false);
+    const auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed) return parsed.error();
+    const Json& json = *parsed;
     const auto wrong = [&](const std::string& what) { return Error{ErrorCode::badInput, fmt::format("Shapes '{}': {}.", file, what)}; };
     if (!json.is_object() || !json.contains("shapes") || !json["shapes"].is_array())
         return wrong("it is no JSON object with an array `shapes`");

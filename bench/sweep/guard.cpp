@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/parsed_json.h"
+
 namespace sconce
 {
 namespace
@@ -104,12 +106,14 @@ Result<Json> readGuard(const std::filesystem::path& file)
     if (!stream)
         return Error{ErrorCode::fileError,
                      fmt::format("File '{}' can't be read; give a baseline of `sconce bench --baseline`.", file.string())};
-    Json json = Json::parse(stream, nullptr, false);
+    const auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed) return parsed;
+    const Json& json = *parsed;
     if (!isGuard(json))
         return Error{ErrorCode::badInput,
                      fmt::format("File '{}' is no baseline of version {}; write it again with `sconce bench --baseline`.", file.string(),
                                  kGuardVersion)};
-    return json;
+    return parsed;
 }
 
 std::vector<std::string> worsened(const Json& guard, const Json& scene, const std::vector<Json>& points)

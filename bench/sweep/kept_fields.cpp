@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parsed_json.h"
 #include "base/safe_file.h"
 #include "bench/sweep/keys.h"
 #include "runtime/field/light_field_file.h"
@@ -17,9 +18,9 @@ std::optional<Json> readJson(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
     if (!stream) return {};
-    Json json = Json::parse(stream, nullptr, false);
-    if (json.is_discarded()) return {}; // not ours, or damaged: measured again
-    return json;
+    auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed || parsed->is_discarded()) return {}; // not ours, or damaged: measured again
+    return std::move(*parsed);
 }
 
 KeptFields::KeptFields(Desc made) : desc(std::move(made)), scene(keyOf(desc.scene)) {}

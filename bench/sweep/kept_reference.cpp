@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parsed_json.h"
 #include "base/safe_file.h"
 #include "bench/reference/path_tracer.h"
 #include "bench/sweep/keys.h"
@@ -56,8 +57,11 @@ std::filesystem::path pictureOf(const std::filesystem::path& folder, const std::
 /// Nothing where there is none, or not a whole one: then it is traced again.
 KeptReference readKept(const std::filesystem::path& folder, const std::string& key)
 {
-    std::ifstream file(folder / (key + ".json"), std::ios::binary);
-    const Json json = Json::parse(file, nullptr, false);
+    const std::filesystem::path file = folder / (key + ".json");
+    std::ifstream stream(file, std::ios::binary);
+    const auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed) return {};
+    const Json& json = *parsed;
     if (!json.is_object() || !json.value("paths", Json()).is_number_unsigned() || !json.value("relmse", Json()).is_array() ||
         json["relmse"].size() != 3 || !json.value("non_finite_paths", Json()).is_number_unsigned() ||
         !json.value("seconds", Json()).is_number() ||

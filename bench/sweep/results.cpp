@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parsed_json.h"
 #include "base/safe_file.h"
 #include "runtime/vulkan/host_vulkan.h"
 
@@ -173,11 +174,13 @@ Result<Json> readResults(const std::filesystem::path& file)
     std::ifstream stream(file);
     if (!stream)
         return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read; give the results.json of a bench.", file.string())};
-    Json json = Json::parse(stream, nullptr, false);
+    const auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed) return parsed;
+    const Json& json = *parsed;
     if (!isResults(json))
         return Error{ErrorCode::badInput,
                      fmt::format("File '{}' is no results.json of schema {}; run `sconce bench` again.", file.string(), kSchema)};
-    return json;
+    return parsed;
 }
 
 } // namespace sconce

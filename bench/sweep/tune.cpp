@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/listed.h"
+#include "base/parsed_json.h"
 namespace sconce
 {
 namespace
@@ -104,7 +105,9 @@ Result<PointSettings> loadQuality(const std::string& fileOrLevel)
                                                          listed(qualityLevels(), &QualityLevel::name))};
     std::ifstream stream(fileOrLevel);
     if (!stream) return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read.", fileOrLevel)};
-    const Json json = Json::parse(stream, nullptr, false);
+    const auto parsed = parsedJson<Json>(stream, fileOrLevel);
+    if (!parsed) return parsed.error();
+    const Json& json = *parsed;
     if (json.is_discarded() || !json.is_object() || json.value("quality", Json()) != kQualityVersion || !json.contains("settings"))
         return Error{ErrorCode::badInput, fmt::format("File '{}' holds no settings of `sconce tune`.", fileOrLevel)};
     Result<PointSettings> settings = settingsFrom("ours", json["settings"]);

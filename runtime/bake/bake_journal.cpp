@@ -58,18 +58,26 @@ StoredHead stored(const JournalHead& head)
     return out;
 }
 
-/// All of the bytes, through short reads and interruptions; false: there are fewer, or an error.
-bool readAll(int file, uint64_t offset, std::span<std::byte> into)
+/// What came of reading: of a disk that fails nothing is known, of fewer bytes that there are no more.
+enum class Read
+{
+    all,
+    fewer,
+    failed // errno says why
+};
+
+/// All of the bytes, through short reads and interruptions.
+Read readAll(int file, uint64_t offset, std::span<std::byte> into)
 {
     size_t done = 0;
     while (done < into.size())
     {
         const ssize_t count = pread(file, into.data() + done, into.size() - done, off_t(offset + done));
         if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return false;
+        if (count <= 0) return count == 0 ? Read::fewer : Read::failed;
         done += size_t(count);
     }
-    return true;
+    return Read::all;
 }
 
 bool writeAll(int file, uint64_t offset, std::span<const std::byte> bytes)
@@ -92,11 +100,12 @@ uint64_t sizeOf(int file)
     return fstat(file, &state) == 0 ? uint64_t(state.st_size) : 0;
 }
 
-/// The head of a file; none: it is no journal's.
-std::optional<JournalHead> headOf(int file)
+/// The head of a file; none: it is no journal's, or that isn't known.
+std::optional<JournalHead> headOf(int file, Read& how)
 {
     StoredHead head{};
-    if (!readAll(file, 0, std::as_writable_bytes(std::span(&head, 1)))) return std::nullopt;
+    how = readAll(file, 0, std::as_writable_bytes(std::span(&head, 1)));
+    if (how != Read::all) return std::nullopt;
     if (std::memcmp(head.magic, kMagic, sizeof kMagic) != 0 || head.checksum != checksumOf(head)) return std::nullopt;
     return JournalHead{head.build, head.content, head.probes, head.shard, head.shards, BakeStage(head.stage)};
 }
@@ -155,7 +164,7 @@ Status JournalFile::lock()
         {
             if (errno != EWOULDBLOCK) return failure("Locking");
             StoredHead head{};
-            const bool known = readAll(descriptor, 0, std::as_writable_bytes(std::span(&head, 1)));
+            const bool known = readAll(descriptor, 0, std::as_writable_bytes(std::span(&head, 1))) == Read::all;
             return Error{ErrorCode::fileError,
                          fmt::format("Another bake ({}) is writing to the same output, and has its journal '{}'; wait for its end, or "
                                      "choose another output",
@@ -187,7 +196,10 @@ Result<JournalFile> JournalFile::open(const std::filesystem::path& file, const J
                      fmt::format("There is no journal '{}' to resume from; leave --resume out to begin anew", file.string())};
     if (auto status = journal.lock(); !status) return status.error();
     const uint64_t size = sizeOf(journal.descriptor);
-    const std::optional<JournalHead> there = headOf(journal.descriptor);
+    Read how = Read::all;
+    const std::optional<JournalHead> there = headOf(journal.descriptor, how);
+    // It may be a good one: what can't be read now is not to be overwritten.
+    if (how == Read::failed) return journal.failure("Reading").error();
     if (there != head)
     {
         const std::string_view why = there ? differenceOf(*there, head) : "has no head that could be read";
@@ -197,10 +209,11 @@ Result<JournalFile> JournalFile::open(const std::filesystem::path& file, const J
         if (auto status = journal.begin(); !status) return status.error();
         return journal;
     }
-    const std::string damage = journal.scan();
-    if (!damage.empty())
+    const auto damage = journal.scan();
+    if (!damage) return damage.error();
+    if (!damage->empty())
         journal.found =
-            fmt::format("the journal '{}' {} after its record {}; the bake goes on from there", file.string(), damage, journal.records());
+            fmt::format("the journal '{}' {} after its record {}; the bake goes on from there", file.string(), *damage, journal.records());
     const StoredHead mine = stored(head);
     if (ftruncate(journal.descriptor, off_t(journal.end)) != 0 || !writeAll(journal.descriptor, 0, std::as_bytes(std::span(&mine, 1))))
         return journal.failure("Writing").error();
@@ -218,13 +231,17 @@ Result<JournalFile> JournalFile::read(const std::filesystem::path& file)
         return Error{ErrorCode::fileError,
                      fmt::format("Cannot read '{}': {}; check that it is there and may be read", file.string(), std::strerror(reason))};
     }
-    const std::optional<JournalHead> head = headOf(journal.descriptor);
+    Read how = Read::all;
+    const std::optional<JournalHead> head = headOf(journal.descriptor, how);
+    if (how == Read::failed) return journal.failure("Reading").error();
     if (!head)
         return Error{
             ErrorCode::badInput,
             fmt::format("'{}' is no part of a bake, or its head is damaged; give what `sconce bake --shard` wrote", file.string())};
     journal.own = *head;
-    std::string damage = journal.scan();
+    const auto scanned = journal.scan();
+    if (!scanned) return scanned.error();
+    std::string damage = *scanned;
     if (damage.empty() && !journal.holds({0, BakeStage::end, 0})) damage = "is cut off";
     if (!damage.empty())
         return Error{ErrorCode::badInput,
@@ -232,12 +249,16 @@ Result<JournalFile> JournalFile::read(const std::filesystem::path& file)
     return journal;
 }
 
-std::optional<std::pair<BakePart, JournalFile::Place>> JournalFile::recordAt(uint64_t offset, uint64_t size) const
+Result<std::optional<std::pair<BakePart, JournalFile::Place>>> JournalFile::recordAt(uint64_t offset, uint64_t size) const
 {
+    using Found = std::optional<std::pair<BakePart, Place>>;
     StoredRecord record{};
-    if (size - offset < sizeof record || !readAll(descriptor, offset, std::as_writable_bytes(std::span(&record, 1)))) return std::nullopt;
+    if (size - offset < sizeof record) return Found();
+    Read how = readAll(descriptor, offset, std::as_writable_bytes(std::span(&record, 1)));
+    if (how == Read::failed) return failure("Reading").error();
+    if (how == Read::fewer) return Found();
     const uint64_t content = offset + sizeof record;
-    if (record.mark != kMark || record.bytes > size - content) return std::nullopt;
+    if (record.mark != kMark || record.bytes > size - content) return Found();
     XXH3_state_t hash;
     XXH3_64bits_reset(&hash);
     XXH3_64bits_update(&hash, &record, kCheckedOfRecord);
@@ -245,25 +266,29 @@ std::optional<std::pair<BakePart, JournalFile::Place>> JournalFile::recordAt(uin
     for (uint64_t done = 0; done < record.bytes; done += piece.size())
     {
         piece.resize(std::min<uint64_t>(record.bytes - done, kPieceBytes));
-        if (!readAll(descriptor, content + done, piece)) return std::nullopt;
+        how = readAll(descriptor, content + done, piece);
+        if (how == Read::failed) return failure("Reading").error();
+        if (how == Read::fewer) return Found();
         XXH3_64bits_update(&hash, piece.data(), piece.size());
     }
-    if (XXH3_64bits_digest(&hash) != record.checksum) return std::nullopt;
-    return std::pair{BakePart{record.bake, BakeStage(record.stage), record.index}, Place{content, record.bytes, record.checksum}};
+    if (XXH3_64bits_digest(&hash) != record.checksum) return Found();
+    return Found({BakePart{record.bake, BakeStage(record.stage), record.index}, Place{content, record.bytes, record.checksum}});
 }
 
-std::string JournalFile::scan()
+Result<std::string> JournalFile::scan()
 {
     const uint64_t size = sizeOf(descriptor);
     end = sizeof(StoredHead);
     while (end < size)
     {
-        const auto record = recordAt(end, size);
-        if (!record) return "is cut off or damaged";
+        const auto read = recordAt(end, size);
+        if (!read) return read.error();
+        const auto& record = *read;
+        if (!record) return std::string("is cut off or damaged");
         places[record->first] = record->second;
         end = record->second.offset + record->second.bytes;
     }
-    return {};
+    return std::string();
 }
 
 std::vector<BakePart> JournalFile::parts() const
@@ -278,7 +303,7 @@ std::optional<std::vector<std::byte>> JournalFile::find(const BakePart& part) co
     const auto place = places.find(part);
     if (place == places.end()) return std::nullopt;
     std::vector<std::byte> bytes(place->second.bytes);
-    if (!readAll(descriptor, place->second.offset, bytes)) return std::nullopt;
+    if (readAll(descriptor, place->second.offset, bytes) != Read::all) return std::nullopt; // what isn't found is baked again
     // Once more: it may have been long ago that it was read.
     const StoredRecord record{kMark, uint32_t(part.stage), part.index, 0, part.bake, bytes.size(), 0};
     XXH3_state_t hash;

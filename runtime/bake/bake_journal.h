@@ -72,7 +72,7 @@ class JournalFile : public BakeJournal
 public:
     /// Opens or makes the journal of a bake, alone.
     /// @param demanded  that it be there, of this bake: else badInput, and what stands there stays as it is
-    /// Errors: fileError: another process has it (named by its pid), or it can't be written; badInput: as above.
+    /// Errors: fileError: another process has it (named by its pid), or it can't be read or written; badInput: as above.
     static Result<JournalFile> open(const std::filesystem::path& file, const JournalHead& head, bool demanded = false);
     /// Reads a finished part file. Errors: fileError: it can't be read; badInput: it isn't one, or damaged.
     static Result<JournalFile> read(const std::filesystem::path& file);
@@ -107,8 +107,8 @@ private:
     JournalFile() = default;
     Status lock();
     Status begin();
-    std::string scan(); // the good records; why what follows them isn't; empty: nothing follows
-    std::optional<std::pair<BakePart, Place>> recordAt(uint64_t offset, uint64_t size) const;
+    Result<std::string> scan(); // the good records; why what follows them isn't; empty: nothing follows
+    Result<std::optional<std::pair<BakePart, Place>>> recordAt(uint64_t offset, uint64_t size) const; // none: it is damaged
     Status failure(std::string_view what) const;
 
     std::filesystem::path name;

@@ -68,7 +68,7 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
 
     VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     poolInfo.queueFamilyIndex = host.queueFamily;
-    VkResult result = gpu->vk.CreateCommandPool(host.device, &poolInfo, host.allocationCallbacks, gpu->commandPool.fresh(*gpu));
+    VkResult result = gpu->commandPool.make(*gpu, gpu->vk.CreateCommandPool, host.device, &poolInfo, host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu->failure("vkCreateCommandPool", result);
     VkCommandBufferAllocateInfo commandInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     commandInfo.commandPool = gpu->commandPool.get();
@@ -76,7 +76,7 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     result = gpu->vk.AllocateCommandBuffers(host.device, &commandInfo, &gpu->commands);
     if (result != VK_SUCCESS) return gpu->failure("vkAllocateCommandBuffers", result);
     const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = gpu->vk.CreateFence(host.device, &fenceInfo, host.allocationCallbacks, gpu->fence.fresh(*gpu));
+    result = gpu->fence.make(*gpu, gpu->vk.CreateFence, host.device, &fenceInfo, host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu->failure("vkCreateFence", result);
     // Last: the scan makes a pipeline and buffers with all that stands above.
     if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
@@ -106,7 +106,7 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     Buffer made;
     made.bytes = info.size;
     made.name = what;
-    VkResult result = vk.CreateBuffer(host.device, &info, host.allocationCallbacks, made.buffer.fresh(*this));
+    VkResult result = made.buffer.make(*this, vk.CreateBuffer, host.device, &info, host.allocationCallbacks);
     if (result != VK_SUCCESS) return failure("vkCreateBuffer", result);
     VkMemoryRequirements needs;
     vk.GetBufferMemoryRequirements(host.device, made.buffer.get(), &needs);
@@ -132,7 +132,7 @@ Status Gpu::makeTexelView(Buffer& buffer, VkFormat format)
     info.buffer = buffer.handle();
     info.format = format;
     info.range = VK_WHOLE_SIZE;
-    const VkResult result = vk.CreateBufferView(host.device, &info, host.allocationCallbacks, buffer.view.fresh(*this));
+    const VkResult result = buffer.view.make(*this, vk.CreateBufferView, host.device, &info, host.allocationCallbacks);
     return result == VK_SUCCESS ? success() : Status(failure("vkCreateBufferView", result));
 }
 
@@ -158,7 +158,7 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     GpuImage made;
     made.made = desc;
     made.name = what;
-    VkResult result = vk.CreateImage(host.device, &info, host.allocationCallbacks, made.image.fresh(*this));
+    VkResult result = made.image.make(*this, vk.CreateImage, host.device, &info, host.allocationCallbacks);
     if (result != VK_SUCCESS) return failure("vkCreateImage", result);
     VkMemoryRequirements needs;
     vk.GetImageMemoryRequirements(host.device, made.image.get(), &needs);
@@ -177,14 +177,14 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     view.viewType = volume ? VK_IMAGE_VIEW_TYPE_3D : desc.array || desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = desc.format;
     view.subresourceRange = {made.aspect(), 0, desc.mips, 0, desc.layers};
-    result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, made.wholeView.fresh(*this));
+    result = made.wholeView.make(*this, vk.CreateImageView, host.device, &view, host.allocationCallbacks);
     if (result != VK_SUCCESS) return failure("vkCreateImageView", result);
     if (!desc.array) return made;
     for (uint32_t layer = 0; layer < desc.layers; ++layer)
     {
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
         view.subresourceRange = {made.aspect(), 0, 1, layer, 1};
-        result = vk.CreateImageView(host.device, &view, host.allocationCallbacks, made.layerViews.emplace_back().fresh(*this));
+        result = made.layerViews.emplace_back().make(*this, vk.CreateImageView, host.device, &view, host.allocationCallbacks);
         if (result != VK_SUCCESS) return failure("vkCreateImageView", result);
     }
     return made;
@@ -195,6 +195,10 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     // One command buffer serves all submits: each is waited for, so that it is idle whenever this is called.
     VkResult result = vk.ResetCommandPool(host.device, commandPool.get(), 0);
     if (result != VK_SUCCESS) return failure("vkResetCommandPool", result);
+    // Before, not after: a submit that failed half-way leaves its fence signalled, and the next would not wait.
+    const VkFence done = fence.get();
+    result = vk.ResetFences(host.device, 1, &done);
+    if (result != VK_SUCCESS) return failure("vkResetFences", result);
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     result = vk.BeginCommandBuffer(commands, &begin);
@@ -205,13 +209,13 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
     info.pCommandBuffers = &commands;
-    result = vk.QueueSubmit(host.queue, 1, &info, fence.get());
+    result = vk.QueueSubmit(host.queue, 1, &info, done);
     if (result != VK_SUCCESS) return failure("vkQueueSubmit", result);
-    const VkFence waited = fence.get();
-    result = vk.WaitForFences(host.device, 1, &waited, VK_TRUE, UINT64_MAX);
+    const auto wait = [&] { return vk.WaitForFences(host.device, 1, &done, VK_TRUE, UINT64_MAX); };
+    result = wait();
+    // Short of memory it hasn't waited, and the device still uses what the caller would give back now; a lost device doesn't.
+    if (result != VK_SUCCESS && result != VK_ERROR_DEVICE_LOST) result = wait();
     if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
-    result = vk.ResetFences(host.device, 1, &waited);
-    if (result != VK_SUCCESS) return failure("vkResetFences", result);
     // Read after the fence: only now have the scans run.
     return scan ? scan->findings() : success();
 }

@@ -30,7 +30,7 @@ Result<GpuTimer> GpuTimer::create(Gpu& gpu, uint32_t maxScopes)
         VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
         info.queryType = VK_QUERY_TYPE_TIMESTAMP;
         info.queryCount = 2 * maxScopes;
-        const VkResult result = gpu.vk.CreateQueryPool(gpu.host.device, &info, gpu.host.allocationCallbacks, made->queries.fresh(gpu));
+        const VkResult result = made->queries.make(gpu, gpu.vk.CreateQueryPool, gpu.host.device, &info, gpu.host.allocationCallbacks);
         if (result != VK_SUCCESS) return gpu.failure("vkCreateQueryPool", result);
     }
     return GpuTimer(std::move(made));
@@ -63,8 +63,10 @@ std::vector<GpuTimer::Scope> GpuTimer::read() const
     if (!state->queries || state->used == 0) return scopes;
     const Gpu& gpu = *state->gpu;
     std::vector<uint64_t> ticks(2 * state->used);
-    gpu.vk.GetQueryPoolResults(gpu.host.device, state->queries.get(), 0, uint32_t(ticks.size()), ticks.size() * sizeof(uint64_t),
-                               ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    const VkResult result =
+        gpu.vk.GetQueryPoolResults(gpu.host.device, state->queries.get(), 0, uint32_t(ticks.size()), ticks.size() * sizeof(uint64_t),
+                                   ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    if (result != VK_SUCCESS) return scopes;
     for (uint32_t i = 0; i < state->used; ++i)
         scopes.push_back({state->names[i], double(ticks[2 * i + 1] - ticks[2 * i]) * double(gpu.properties.limits.timestampPeriod) * 1e-6});
     return scopes;

@@ -35,7 +35,7 @@ public:
         const char* name;
         double milliseconds;
     };
-    /// After the command buffer has finished; empty when the queue has no timestamps.
+    /// After the command buffer has finished; empty when the queue has no timestamps, or a lost device doesn't give them.
     std::vector<Scope> read() const;
 
 private:

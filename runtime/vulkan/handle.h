@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <vulkan/vulkan.h>
+
 namespace sconce
 {
 
@@ -25,12 +27,16 @@ public:
     ~Handle(); // defined where Gpu is: runtime/vulkan/gpu.h
 
     T get() const { return value; }
-    /// Where a function of the device writes what it makes; what was held before is given back.
-    T* fresh(const Gpu& maker)
+    /// Holds what a function of the device makes; what was held before is given back. Of one that fails nothing is held: Vulkan doesn't say
+    /// what such a function leaves in its output.
+    /// @param arguments  of the function, without the output, its last
+    template <class Function, class... Arguments> VkResult make(const Gpu& maker, Function function, const Arguments&... arguments)
     {
         *this = Handle();
-        gpu = &maker;
-        return &value;
+        T made = {};
+        const VkResult result = function(arguments..., &made);
+        if (result == VK_SUCCESS) gpu = &maker, value = made;
+        return result;
     }
     explicit operator bool() const { return value != T{}; }
 

@@ -102,17 +102,20 @@ std::string versionText(uint32_t version)
 
 Error vulkanError(const char* call, VkResult result, const char* remedy)
 {
-    return {ErrorCode::deviceFailure, fmt::format("{} failed with VkResult {}; {}", call, int(result), remedy)};
+    const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return {memory ? ErrorCode::outOfMemory : ErrorCode::deviceFailure,
+            fmt::format("{} failed with VkResult {}; {}", call, int(result), memory ? "free memory" : remedy)};
 }
 
-std::vector<VkPhysicalDevice> devicesOf(VkInstance instance)
+Result<std::vector<VkPhysicalDevice>> devicesOf(VkInstance instance)
 {
     auto enumerate = load<PFN_vkEnumeratePhysicalDevices>(instance, "vkEnumeratePhysicalDevices");
     uint32_t count = 0;
-    enumerate(instance, &count, nullptr);
-    std::vector<VkPhysicalDevice> devices(count);
-    enumerate(instance, &count, devices.data());
-    devices.resize(count);
+    VkResult result = enumerate(instance, &count, nullptr);
+    std::vector<VkPhysicalDevice> devices(result == VK_SUCCESS ? count : 0);
+    if (result == VK_SUCCESS) result = enumerate(instance, &count, devices.data());
+    if (result < 0) return vulkanError("vkEnumeratePhysicalDevices", result, "check the driver with vulkaninfo");
+    devices.resize(count); // fewer where one has gone meanwhile
     return devices;
 }
 
@@ -184,7 +187,9 @@ Result<VkInstance> makeInstance(bool validation, MessageLog* log, std::span<cons
 
 Result<VkPhysicalDevice> chooseDevice(VkInstance instance, const std::string& wanted)
 {
-    const std::vector<VkPhysicalDevice> devices = devicesOf(instance);
+    const auto found = devicesOf(instance);
+    if (!found) return found.error();
+    const std::vector<VkPhysicalDevice>& devices = *found;
     if (devices.empty())
         return Error{ErrorCode::missingFeature, "No Vulkan device was found; install a Vulkan driver (Mesa has a software one)"};
     size_t index = 0;
@@ -278,15 +283,19 @@ namespace
 {
 
 /// The messenger in makeInstance() covers the making and the destruction of the instance alone; this one, all between.
-void listen(MadeDevice& made)
+Status listen(MadeDevice& made)
 {
     VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     info.pfnUserCallback = keepMessage;
     info.pUserData = &made.log;
-    load<PFN_vkCreateDebugUtilsMessengerEXT>(made.host.instance, "vkCreateDebugUtilsMessengerEXT")(made.host.instance, &info, nullptr,
-                                                                                                   &made.messenger);
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    const VkResult result = load<PFN_vkCreateDebugUtilsMessengerEXT>(made.host.instance, "vkCreateDebugUtilsMessengerEXT")(
+        made.host.instance, &info, nullptr, &messenger);
+    if (result != VK_SUCCESS) return vulkanError("vkCreateDebugUtilsMessengerEXT", result, "run without validation");
+    made.messenger = messenger;
+    return success();
 }
 
 } // namespace
@@ -312,7 +321,8 @@ Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std:
     host.instance = *instance;
     host.getInstanceProcAddr = vkGetInstanceProcAddr;
     host.memoryBudget = desc.memoryBudget;
-    if (made->validation) listen(*made);
+    if (made->validation)
+        if (auto status = listen(*made); !status) return status.error();
     auto chosen = chooseDevice(host.instance, desc.device);
     if (!chosen) return chosen.error();
     host.physicalDevice = *chosen;
@@ -335,12 +345,14 @@ Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std:
     info.pQueueCreateInfos = &queue;
     info.enabledExtensionCount = uint32_t(deviceExtensions.size());
     info.ppEnabledExtensionNames = deviceExtensions.data();
-    const VkResult result = load<PFN_vkCreateDevice>(host.instance, "vkCreateDevice")(host.physicalDevice, &info, nullptr, &host.device);
+    VkDevice device = VK_NULL_HANDLE;
+    const VkResult result = load<PFN_vkCreateDevice>(host.instance, "vkCreateDevice")(host.physicalDevice, &info, nullptr, &device);
     if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
         return Error{ErrorCode::missingFeature,
                      fmt::format("The device {} has not all of {}; update its driver or choose another device",
                                  propertiesOf(host.instance, *chosen).deviceName, fmt::join(deviceExtensions, ", "))};
     if (result != VK_SUCCESS) return vulkanError("vkCreateDevice", result, "check the driver with vulkaninfo");
+    host.device = device;
     load<PFN_vkGetDeviceQueue>(host.instance, "vkGetDeviceQueue")(host.device, host.queueFamily, 0, &host.queue);
     return made;
 }
@@ -349,8 +361,12 @@ Result<std::vector<DeviceSummary>> deviceSummary()
 {
     auto instance = makeInstance(false, nullptr);
     if (!instance) return instance.error();
+    MadeDevice owner; // of the instance alone
+    owner.host.instance = *instance;
+    const auto devices = devicesOf(*instance);
+    if (!devices) return devices.error();
     std::vector<DeviceSummary> all;
-    for (VkPhysicalDevice device : devicesOf(*instance))
+    for (VkPhysicalDevice device : *devices)
     {
         VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
         VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, &subgroup};
@@ -373,7 +389,6 @@ Result<std::vector<DeviceSummary>> deviceSummary()
         summary.missing = missingFeatures(vkGetInstanceProcAddr, *instance, device);
         all.push_back(std::move(summary));
     }
-    load<PFN_vkDestroyInstance>(*instance, "vkDestroyInstance")(*instance, nullptr);
     return all;
 }
 

@@ -22,14 +22,14 @@ Result<DescriptorSet> DescriptorSet::create(Gpu& gpu, std::span<const Binding> b
     layoutInfo.bindingCount = uint32_t(layout.size());
     layoutInfo.pBindings = layout.data();
     VkResult result =
-        gpu.vk.CreateDescriptorSetLayout(gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks, made.setLayout.fresh(gpu));
+        made.setLayout.make(gpu, gpu.vk.CreateDescriptorSetLayout, gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorSetLayout", result);
     // A pool for one set: the set lives and dies with it, beside all others.
     VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     poolInfo.maxSets = 1;
     poolInfo.poolSizeCount = uint32_t(sizes.size());
     poolInfo.pPoolSizes = sizes.data();
-    result = gpu.vk.CreateDescriptorPool(gpu.host.device, &poolInfo, gpu.host.allocationCallbacks, made.pool.fresh(gpu));
+    result = made.pool.make(gpu, gpu.vk.CreateDescriptorPool, gpu.host.device, &poolInfo, gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorPool", result);
     VkDescriptorSetAllocateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     setInfo.descriptorPool = made.pool.get();
@@ -90,7 +90,7 @@ struct Module
         VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
         info.codeSize = code.size_bytes();
         info.pCode = code.data();
-        result = gpu.vk.CreateShaderModule(gpu.host.device, &info, gpu.host.allocationCallbacks, handle.fresh(gpu));
+        result = handle.make(gpu, gpu.vk.CreateShaderModule, gpu.host.device, &info, gpu.host.allocationCallbacks);
     }
 };
 
@@ -127,8 +127,7 @@ Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_
     info.pSetLayouts = sets.data();
     info.pushConstantRangeCount = pushBytes > 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
-    const VkResult result =
-        gpu->vk.CreatePipelineLayout(gpu->host.device, &info, gpu->host.allocationCallbacks, pipelineLayout.fresh(*gpu));
+    const VkResult result = pipelineLayout.make(*gpu, gpu->vk.CreatePipelineLayout, gpu->host.device, &info, gpu->host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu->failure("vkCreatePipelineLayout", result);
     return success();
 }
@@ -147,7 +146,7 @@ Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDes
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
     info.layout = made.pipelineLayout.get();
     const VkResult result =
-        gpu.vk.CreateComputePipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, made.pipeline.fresh(gpu));
+        made.pipeline.make(gpu, gpu.vk.CreateComputePipelines, gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateComputePipelines", result);
     return made;
 }
@@ -213,7 +212,7 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     info.pDynamicState = &dynamic;
     info.layout = made.pipelineLayout.get();
     const VkResult result =
-        gpu.vk.CreateGraphicsPipelines(gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks, made.pipeline.fresh(gpu));
+        made.pipeline.make(gpu, gpu.vk.CreateGraphicsPipelines, gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateGraphicsPipelines", result);
     return made;
 }
@@ -228,7 +227,7 @@ void Pipeline::bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets) 
 Result<Sampler> Sampler::create(Gpu& gpu, const VkSamplerCreateInfo& info)
 {
     Sampler made;
-    const VkResult result = gpu.vk.CreateSampler(gpu.host.device, &info, gpu.host.allocationCallbacks, made.sampler.fresh(gpu));
+    const VkResult result = made.sampler.make(gpu, gpu.vk.CreateSampler, gpu.host.device, &info, gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateSampler", result);
     return made;
 }
