@@ -31,9 +31,10 @@ layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
 bool readsFarBounds() { return (kFieldFlags & kReadsFarBounds) != 0u; }
 bool byTexels() { return (kFieldFlags & kByTexels) != 0u; }
 bool holdsRefined() { return (kFieldFlags & kHoldsRefined) != 0u; }
+bool holdsPrefiltered() { return (kFieldFlags & kHoldsPrefiltered) != 0u; }
 bool holdsLive() { return (kFieldFlags & kHoldsLive) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
-// Whether the field holds the maps' radiance; else only its prefiltered form.
+// Whether the field holds the maps' radiance; else only its prefiltered form, or none.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
 bool holdsRadiance() { return kHoldsRadiance; }
 

@@ -39,6 +39,7 @@ template <class Real, std::uint32_t kind> struct BaselineTwin : LightFieldTwin<R
     using Base::noneTried;
     using Base::wasTried;
     using TriedProbes = typename Base::TriedProbes;
+    using Base::holdsPrefiltered;
     using Base::holdsRadiance;
     using Base::kRanked;
     using Base::kUnknown;

@@ -199,10 +199,10 @@ VkDescriptorSet LightField::descriptorSet() const
 std::array<uint32_t, 2> LightField::constants() const
 {
     std::array<uint32_t, 2> values{};
-    values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
-                                 (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
-                                 (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
-                                 (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u);
+    values[gpu::kFieldFlagsId] =
+        (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
+        (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
+        (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u) | (shared->prefiltered.size() > 0 ? gpu::kHoldsPrefiltered : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

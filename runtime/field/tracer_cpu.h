@@ -75,6 +75,10 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     {
         return !source.radiance.empty();
     }
+    bool holdsPrefiltered() const
+    {
+        return !source.prefiltered.empty();
+    }
     const ProbeHeader& probeHeader(uint probe) const
     {
         if constexpr (kCounts) ++read.headers;

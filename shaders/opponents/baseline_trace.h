@@ -220,6 +220,7 @@ SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
 SCONCE_FN vec3 baselineRadiance(SCONCE_IN(TraceResult) hit)
 {
     int n = int(field.faceSize);
+    if (!holdsRadiance() && !holdsPrefiltered()) return vec3(real(0.0));
     if (!holdsRadiance()) return prefilteredRadiance(hit.probe, directionFromOctahedral(hit.pixel / real(n)), real(0.0));
     real x = hit.pixel.x - real(0.5), y = hit.pixel.y - real(0.5);
     int x0 = min(max(int(floor(x)), 0), n - 2);

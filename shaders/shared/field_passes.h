@@ -19,6 +19,7 @@ const uint kHoldsRadianceId = 1u;
 const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
 const uint kOnOctahedron = 2u;
 const uint kHoldsRefined = 8u; // some texels of the surface light are refined
+const uint kHoldsPrefiltered = 32u; // there is prefiltered radiance
 const uint kHoldsLive = 16u; // rays find live light (live_light.h), besides the radiance that is baked
 const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 

@@ -1,5 +1,5 @@
 // What light the probe maps hold: radiance at a traced hit and prefiltered irradiance at a point. Shared text, see probe_trace.h; needs
-// radianceWord(uint), irradianceWord(uint), patchWords(uint) and holdsRadiance() besides.
+// radianceWord(uint), irradianceWord(uint), patchWords(uint), holdsRadiance() and holdsPrefiltered() besides.
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {

@@ -37,8 +37,10 @@ SCONCE_FN RayHit answerOf(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
     if (r.face >= 0)
     {
         normal = texelNormal(r.face, r.pixel, r.word);
-        // A field of a scene without glossy surfaces has its radiance only prefiltered: the hit is then as blurred as that.
-        if (!holdsRadiance()) radiance = prefilteredRadiance(r.probe, pixelDirection(r.face, r.pixel), real(0.0));
+        // A field of a scene without glossy surfaces has its radiance only prefiltered: the hit is then as blurred as that. One that was baked
+        // for where rays end has none.
+        if (!holdsRadiance() && holdsPrefiltered()) radiance = prefilteredRadiance(r.probe, pixelDirection(r.face, r.pixel), real(0.0));
+        else if (!holdsRadiance()) radiance = vec3(real(0.0));
         else if (holdsLive()) radiance = fixedWeight() * surfelRadiance(r) + liveRadiance(r);
         else radiance = surfelRadiance(r);
     }

@@ -97,6 +97,34 @@ TEST_F(GpuTrace, AnswersAlikeThroughTexelsAndAddresses)
     EXPECT_EQ(std::memcmp(hits[0].data(), hits[1].data(), hits[0].size() * sizeof(gpu::RayHit)), 0);
 }
 
+// As one is baked that is only asked where rays end.
+TEST_F(GpuTrace, AFieldWithoutRadianceOfAnyKindAnswersInBlack)
+{
+    FieldData field = litCornell();
+    field.radiance.clear();
+    field.prefiltered.clear();
+    const RaySet set = cornellRays(1000);
+    std::vector<gpu::Ray> rays;
+    for (size_t i = 0; i < set.size(); ++i) rays.push_back({set.origins[i], set.directions[i], set.normals[i]});
+    twin::LightFieldTwin<float> text(field, defaultQuality());
+    for (const WordAccess access : {WordAccess::texelBuffers, WordAccess::addresses})
+    {
+        const auto device = makeLightField(gpu(), field, {}, access);
+        ASSERT_TRUE(device) << device.error().message;
+        const auto tracer = makeRayTracer(gpu(), *device);
+        std::vector<gpu::RayHit> hits(rays.size());
+        ASSERT_TRUE(tracer->trace(rays, hits));
+        size_t met = 0;
+        for (size_t i = 0; i < rays.size(); ++i)
+        {
+            EXPECT_EQ(vec3(hits[i].radiance), vec3(0.0f));
+            EXPECT_EQ(vec3(text.queryRay(rays[i].origin, rays[i].direction, rays[i].normal).radiance), vec3(0.0f));
+            met += hits[i].status == uint32_t(TraceStatus::hit);
+        }
+        EXPECT_GT(met, rays.size() / 2); // the box is open
+    }
+}
+
 TEST_F(GpuTrace, RefusesKnobsOutOfRangeByName)
 {
     Quality quality;
