@@ -29,6 +29,7 @@ struct Text
     static constexpr uint kSeesAll = gpu::kSeesAll;
     static constexpr int kRanked = gpu::kRanked;
     static constexpr int kBlock = gpu::kBlock;
+    static constexpr int kFreeSamples = gpu::kFreeSamples;
 
     const gpu::OctreeBuild& build;
     const ProbeMaps& maps;

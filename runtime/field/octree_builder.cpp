@@ -112,8 +112,8 @@ public:
         if (!uploaded) return uploaded.error();
         blocks = std::move(*uploaded);
         const auto dense = uint32_t(open - numbers.begin());
-        if (auto status = rankBlocks(rankPass, 0, dense, kFreeSamples + gpu::kSurfelSlots, progress); !status) return status;
-        return rankBlocks(openRankPass, dense, uint32_t(numbers.size()), kFreeSamples, progress);
+        if (auto status = rankBlocks(rankPass, 0, dense, gpu::kFreeSamples + gpu::kSurfelSlots, progress); !status) return status;
+        return rankBlocks(openRankPass, dense, uint32_t(numbers.size()), gpu::kFreeSamples, progress);
     }
 
     /// Spreads lists into what has none, then joins them level by level.
@@ -134,8 +134,6 @@ public:
     }
 
 private:
-    static constexpr uint32_t kFreeSamples = 9; // of a voxel, octree_rank.h
-
     size_t blockCount() const
     {
         const ivec3 count = (plan.build.count + gpu::kBlock - 1) / gpu::kBlock;

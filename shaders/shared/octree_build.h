@@ -12,6 +12,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Can
 SCONCE_STRUCTS_BEGIN
 
 const uint kSurfelSlots = 16u; // surface samples a voxel keeps: one an octant of the voxel and side of the surface
+const int kFreeSamples = 9;          // points of free space that a voxel is judged at: centre and 8 toward the corners
 const int kBlock = 4;                // voxels a side of the blocks whose candidates are culled together; a region holds whole blocks
 const uint kMostCandidates = 256u;   // of a region
 const uint kSeesAll = 0x80000000u;   // of a candidate of a block: nothing is before any point there

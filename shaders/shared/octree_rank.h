@@ -9,7 +9,6 @@
 // A voxel is judged at points of free space in it and at the surfaces in it, each from the side it is seen from: a probe below a floor
 // sees the free space of a voxel that the floor divides, but not the floor's upper side. After Wang et al. 2019, section 4.1.
 
-SCONCE_CONST int kFreeSamples = 9;        // centre and 8 points toward the corners
 SCONCE_CONST real kSpread = real(0.375);  // of those, voxels from the centre per axis
 SCONCE_CONST real kLift = real(0.1);      // voxels that a surface sample is judged in front of its surface
 SCONCE_CONST uint kSurfaceWeight = 2u;    // a surface sample counts as so many of free space: rays start at surfaces

@@ -27,7 +27,7 @@ struct Text
     using uint = uint32_t;
     using vec2f = glm::vec2;
     static constexpr uint kNoSurfel = gpu::kNoSurfel, kNoList = gpu::kNoList, kSurfelSlots = gpu::kSurfelSlots, kSeesAll = gpu::kSeesAll;
-    static constexpr int kRanked = gpu::kRanked, kBlock = gpu::kBlock;
+    static constexpr int kRanked = gpu::kRanked, kBlock = gpu::kBlock, kFreeSamples = gpu::kFreeSamples;
     const gpu::OctreeBuild& build;
     const FieldData& field;
     uint distanceWord(uint index) const { return field.distance[index]; }
