@@ -95,6 +95,20 @@ class Slurm:
             time.sleep(0.1)
         fail(f"{trouble}\n{self.run('squeue', '--array')}" + "".join((self.folder / f"{name}.log").read_text()[-2000:] for name in ("slurmctld", "slurmd")))
 
+    def resumed(self):
+        """Whether the node takes jobs again; it comes back by itself, too, where it answers before it is told to."""
+        if "down" not in self.run("sinfo", "--noheader", "--format=%t"):
+            return True
+        subprocess.run(["scontrol", "update", f"nodename={self.host}", "state=resume"], env=self.env, check=False, stderr=subprocess.DEVNULL)
+        return False
+
+    def begin_what_waits(self):
+        """Slurm lets minutes go by before a job whose node died begins again."""
+        for job in self.run("squeue", "--noheader", "--array", "--states=PENDING", "--format=%i %j").splitlines():
+            number, name = job.split()
+            if name == "sconce-maps":
+                self.run("scontrol", "update", f"jobid={number}", "starttime=now")
+
     def jobs(self, *of):
         return self.run("squeue", "--noheader", "--array", "--format=%j %T %r", *of).splitlines()
 
@@ -144,7 +158,8 @@ def main(sconce, script):
                 slurm.until("no shard of the maps began", lambda: any(line.startswith("sconce-maps RUNNING") for line in slurm.jobs()))
                 slurm.run("scontrol", "update", f"nodename={slurm.host}", "state=down", "reason=killed")
                 slurm.until("the dead node's shards go on", lambda: not slurm.jobs("--states=RUNNING,COMPLETING"))
-                slurm.run("scontrol", "update", f"nodename={slurm.host}", "state=resume")
+                slurm.until("the node stays dead", slurm.resumed)
+                slurm.begin_what_waits()
                 text, code = ended(job)
                 if code != 0:
                     fail(f"after a node's death: exit {code}\n{text}{logs()}")
