@@ -184,6 +184,9 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"The octree's candidates", "integers"},
         {"The octree's settings", "from the host"},
         {"The octree's surface samples", "integers"},
+        {"The octree's blocks with surfaces", "integers"},
+        {"The octree's blocks", "integers"},
+        {"What the octree's blocks may ask", "integers"},
         {"The octree's lists", "integers"},
     };
     Scene scene = *makeBuiltinScene("cornell-glossy");
