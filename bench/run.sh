@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and measures what accuracy costs: bench/run.sh [--full] [SCENE...] [options of `sconce bench`].
-# Without scenes: cornell-glossy with maps of 192 texels, half an hour to an hour on 2 cores. --full: every built-in scene and every scene of the
+# Without scenes: cornell-glossy with maps of 192 texels, about 20 minutes on 2 cores. --full: every built-in scene and every scene of the
 # folder SCONCE_SCENES [../shared/scenes] at full resolution, for hours; what is measured already is kept, so it can be interrupted.
 # Results: out/bench/{report/index.html,results.json,results.csv}, or where -o says.
 set -euo pipefail
