@@ -151,7 +151,7 @@ std::string exrProblem(std::span<const std::byte> start, uint64_t fileBytes)
         2 * ExrLimits::side)
         return fmt::format("its pixels begin at {},{}; at most {} from the origin are read", box.left, box.top, 2 * ExrLimits::side);
     const uint64_t wanted = uint64_t(width) * uint64_t(height) * *header.channels * sizeof(float);
-    if (*header.channels == 0 || wanted > ExrLimits::fileBytes || wanted / ExrLimits::mostExpansion > fileBytes)
+    if (*header.channels == 0 || wanted > ExrLimits::pixelBytes || wanted / ExrLimits::mostExpansion > fileBytes)
         return fmt::format("its {}x{} pixels of {} channels don't fit its {} bytes; write it again", width, height, *header.channels,
                            fileBytes);
     return {};

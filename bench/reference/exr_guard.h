@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -12,10 +13,10 @@ namespace sconce
 /// https://openexr.com/en/latest/OpenEXRFileLayout.html).
 struct ExrLimits
 {
-    static constexpr int64_t side = 16384;            // pixels
-    static constexpr uint64_t headerBytes = 1u << 20; // of a header
-    static constexpr uint64_t fileBytes = uint64_t(4) << 30;
-    static constexpr uint64_t mostExpansion = 2 * 1032; // half floats read as floats, of deflate's greatest ratio
+    static constexpr int64_t side = 16384;                    // pixels
+    static constexpr uint64_t headerBytes = 1u << 20;         // of a header
+    static constexpr uint64_t pixelBytes = uint64_t(4) << 30; // of all channels as floats
+    static constexpr uint64_t mostExpansion = 2 * 1032;       // half floats read as floats, of deflate's greatest ratio
 };
 
 /// What is wrong with a picture before a library sees it, as the end of a sentence with what to do; empty: nothing.

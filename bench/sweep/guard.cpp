@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <initializer_list>
 #include <optional>
 
 #include <fmt/format.h>
@@ -68,11 +67,6 @@ Json guardedScene(const std::string& name, const std::string& source, const Json
 
 namespace
 {
-
-bool holdsTexts(const Json& object, std::initializer_list<const char*> keys)
-{
-    return object.is_object() && std::ranges::all_of(keys, [&](const char* key) { return object.value(key, Json()).is_string(); });
-}
 
 /// Whether worsened() finds what it reads.
 bool isGuard(const Json& json)

@@ -145,6 +145,11 @@ Status writeResults(const Json& results, const std::filesystem::path& folder)
     return writeText(folder / "results.csv", resultsCsv(results));
 }
 
+bool holdsTexts(const Json& object, std::initializer_list<const char*> keys)
+{
+    return object.is_object() && std::ranges::all_of(keys, [&](const char* key) { return object.value(key, Json()).is_string(); });
+}
+
 namespace
 {
 
@@ -153,17 +158,9 @@ bool isResults(const Json& json)
 {
     if (!json.is_object() || json.value("schema", Json()) != kSchema) return false;
     const Json scenes = json.value("scenes", Json());
-    const auto holdsText = [](const Json& object, const char* key) { return object.value(key, Json()).is_string(); };
-    const auto isPoint = [&](const Json& point)
-    {
-        return point.is_object() && holdsText(point, "id") && holdsText(point, "method") && holdsText(point, "knob") &&
-               holdsText(point, "value");
-    };
+    const auto isPoint = [](const Json& point) { return holdsTexts(point, {"id", "method", "knob", "value"}); };
     const auto isScene = [&](const Json& scene)
-    {
-        return scene.is_object() && holdsText(scene, "name") && scene.value("points", Json()).is_array() &&
-               std::ranges::all_of(scene["points"], isPoint);
-    };
+    { return holdsTexts(scene, {"name"}) && scene.value("points", Json()).is_array() && std::ranges::all_of(scene["points"], isPoint); };
     return scenes.is_array() && std::ranges::all_of(scenes, isScene);
 }
 

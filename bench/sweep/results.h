@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 
 #include "base/result.h"
 #include "bench/sweep/settings.h"
@@ -16,6 +17,9 @@ Status writeResults(const Json& results, const std::filesystem::path& folder);
 
 /// One line a point, one column a figure of docs/formats.md; empty where it wasn't measured.
 std::string resultsCsv(const Json& results);
+
+/// Whether it is an object in which each of the keys has a text.
+bool holdsTexts(const Json& object, std::initializer_list<const char*> keys);
 
 /// Reads results.json, or what has its schema. Errors: fileError, badInput (another schema).
 Result<Json> readResults(const std::filesystem::path& file);

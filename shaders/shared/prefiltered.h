@@ -38,11 +38,14 @@ struct OctahedralTaps
     vec4 weight;
 };
 
+/// Within the map; a number that is none is 0, so that no look-up leaves it.
+SCONCE_PURE real withinMap(real u) { return u > real(0.0) ? min(u, real(1.0)) : real(0.0); }
+
 /// Of an octahedral map of n texels a side; across its border the look-up goes on where the sphere does.
 SCONCE_PURE OctahedralTaps octahedralTaps(vec2 uv, int n)
 {
-    real x = uv.x * real(n) - real(0.5);
-    real y = uv.y * real(n) - real(0.5);
+    real x = withinMap(uv.x) * real(n) - real(0.5);
+    real y = withinMap(uv.y) * real(n) - real(0.5);
     int x0 = int(floor(x));
     int y0 = int(floor(y));
     real fx = x - floor(x);

@@ -173,6 +173,10 @@ def main(sconce, script):
                 text, code = ended(bake("none.sconce", "--probes", "none.json"))
                 if code == 0 or (folder / "none.sconce").exists() or "none.json" not in logs():
                     fail(f"without probes: exit {code}\n{text}{logs()}")
+                shutil.copy(folder / "probes.json", folder / "none.json")
+                text, code = ended(bake("none.sconce", "--probes", "none.json")) # what was said to help
+                if code != 0 or (folder / "none.sconce").read_bytes() != (folder / "whole.sconce").read_bytes():
+                    fail(f"the same command again: exit {code}\n{text}{logs()}")
             finally:
                 slurm.end()
     print("fields of shards are those of one bake, after a node's death, too")

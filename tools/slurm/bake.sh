@@ -32,7 +32,7 @@ command -v sbatch > /dev/null || { echo "slurm/bake.sh: there is no sbatch; inst
 
 parts=$field.parts
 mkdir -p "$parts"
-# submit NAME DEPENDENCY SBATCH-OPTION... -- WORD...: a job of one command; its number. A word is quoted once, but SHARD is the task's number.
+# submit NAME DEPENDENCY SBATCH-OPTION... -- WORD...: a job of one command; its number. Each word is quoted, but @TASK@ in it is the task's number.
 submit()
 {
     local name=$1 after=$2 own=() line
@@ -41,7 +41,7 @@ submit()
     shift
     printf -v line '%q ' "$@"
     sbatch --parsable --requeue --kill-on-invalid-dep=yes --job-name="sconce-$name" --output="$parts/$name.%a.log" ${after:+--dependency=afterok:$after} \
-        ${options[@]+"${options[@]}"} ${own[@]+"${own[@]}"} --wrap "exec ${line//SHARD/\$SLURM_ARRAY_TASK_ID}"
+        ${options[@]+"${options[@]}"} ${own[@]+"${own[@]}"} --wrap "exec ${line//@TASK@/\$SLURM_ARRAY_TASK_ID}"
 }
 
 sconce=${SCONCE:-sconce}
@@ -53,9 +53,9 @@ if [[ -z $probes ]]; then
 fi
 maps=() light=()
 for ((i = 0; i < shards; ++i)); do maps+=("$parts/maps.$i"); light+=("$parts/light.$i"); done
-shard=("$sconce" bake "$scene" --probes "$probes" ${bake[@]+"${bake[@]}"} -q --shard "SHARD/$shards")
-seen=$(submit maps "$first" "$array" -- "${shard[@]}" -o "$parts/maps.SHARD")
-gathered=$(submit light "$seen" "$array" -- "${shard[@]}" --after "${maps[@]}" -o "$parts/light.SHARD")
+shard=("$sconce" bake "$scene" --probes "$probes" ${bake[@]+"${bake[@]}"} -q --shard "@TASK@/$shards")
+seen=$(submit maps "$first" "$array" -- "${shard[@]}" -o "$parts/maps.@TASK@")
+gathered=$(submit light "$seen" "$array" -- "${shard[@]}" --after "${maps[@]}" -o "$parts/light.@TASK@")
 # Only the last job's end says that all is done; then nobody needs the parts. To wait for a job that never runs, since one before it failed, is no error.
 merge=("$sconce" merge "${maps[@]}" "${light[@]}" -q -o "$field")
 submit merge "$gathered" $wait -- bash -c "$(printf '%q ' "${merge[@]}") && rm -r $(printf '%q' "$parts")"

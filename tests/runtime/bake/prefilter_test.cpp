@@ -117,5 +117,19 @@ TEST(Prefilter, NoSeamWhereTheMapFolds)
     }
 }
 
+// A host's direction may be NaN, and so may one between places that are far apart.
+TEST(Prefilter, LookUpsOfNumbersThatAreNoneStayInTheMap)
+{
+    const float nan = std::nanf(""), huge = INFINITY;
+    for (const int n : {1, 2, 8, 16})
+        for (const float u : {nan, huge, -huge, -1e30f, -0.5f, -0.0f, 0.0f, 0.5f, 1.0f, 1.5f, 1e30f})
+            for (const float v : {nan, -huge, 0.25f, 1.0f, huge})
+            {
+                const auto taps = Text::octahedralTaps(vec2(u, v), n);
+                for (int i = 0; i < 4; ++i) EXPECT_LT(taps.texel[i], uint32_t(n * n)) << u << " " << v << " of " << n;
+                EXPECT_NEAR(taps.weight.x + taps.weight.y + taps.weight.z + taps.weight.w, 1.0f, 1e-6f) << u << " " << v;
+            }
+}
+
 } // namespace
 } // namespace sconce
