@@ -64,10 +64,14 @@ public:
 
     /// Uploads the rays that time() traces, at most 2^18: in their order, and in the given one.
     Status prepare(std::span<const gpu::Ray> rays, std::span<const uint32_t> order);
-    /// One run over the prepared rays, milliseconds of the trace pass alone by the device's clock.
+    /// One run over the prepared rays, milliseconds of the trace pass alone by the device's clock. A fast device goes over them again until
+    /// kLeastTimed have passed, one pass after the other, and the mean counts: what lasts less is mostly the start of a pass.
     Result<double> time(bool inOrder);
+    static constexpr double kLeastTimed = 5.0; // milliseconds
+    static constexpr uint32_t kMostPasses = 4096;
 
 private:
+    Result<double> timePasses(const Buffer& rays, uint32_t passes); // milliseconds of all of them
     explicit TracedMethod(Gpu& device) : gpu(device) {}
     Gpu& gpu;
     std::string label, path;
@@ -78,6 +82,7 @@ private:
     std::optional<GpuTimer> timer;
     Buffer orderedRays, shuffledRays, hitBuffer;
     uint32_t timedRays = 0;
+    uint32_t orderedPasses = 1, shuffledPasses = 1; // that last kLeastTimed
 };
 
 } // namespace sconce

@@ -182,7 +182,7 @@ void printTimes(std::span<const Row> rows, size_t rays, uint32_t runs)
         for (const auto part : {&Speed::ordered, &Speed::shuffled})
         {
             const Times times = timesOf(row.speed.*part);
-            std::printf("  %6.0f (%5.0f to %5.0f)  %7.3f", times.median, times.p5, times.p95, double(rays) / times.median / 1e3);
+            std::printf("  %8.3f (%8.3f to %8.3f)  %8.3f", times.median, times.p5, times.p95, double(rays) / times.median / 1e3);
             if (yardstick)
                 std::printf("  %5.2f", times.median / timesOf(yardstick->speed.*part).median);
             else

@@ -75,9 +75,6 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     commandInfo.commandBufferCount = 1;
     result = gpu->vk.AllocateCommandBuffers(host.device, &commandInfo, &gpu->commands);
     if (result != VK_SUCCESS) return gpu->failure("vkAllocateCommandBuffers", result);
-    const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = gpu->fence.make(*gpu, gpu->vk.CreateFence, host.device, &fenceInfo, host.allocationCallbacks);
-    if (result != VK_SUCCESS) return gpu->failure("vkCreateFence", result);
     // Last: the scan makes a pipeline and buffers with all that stands above.
     if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
     {
@@ -195,6 +192,12 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     // One command buffer serves all submits: each is waited for, so that it is idle whenever this is called.
     VkResult result = vk.ResetCommandPool(host.device, commandPool.get(), 0);
     if (result != VK_SUCCESS) return failure("vkResetCommandPool", result);
+    if (!fence) // here, not with the device: one that only compiles has none (pass_statistics)
+    {
+        const VkFenceCreateInfo info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+        result = fence.make(*this, vk.CreateFence, host.device, &info, host.allocationCallbacks);
+        if (result != VK_SUCCESS) return failure("vkCreateFence", result);
+    }
     // Before, not after: a submit that failed half-way leaves its fence signalled, and the next would not wait.
     const VkFence done = fence.get();
     result = vk.ResetFences(host.device, 1, &done);

@@ -310,7 +310,7 @@ Result<OwnDevice> OwnDevice::create(const Desc& desc)
 }
 
 Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std::span<const char* const> instanceExtensions,
-                                               std::span<const char* const> deviceExtensions)
+                                               std::span<const char* const> deviceExtensions, void* extensionFeatures)
 {
     auto made = std::make_unique<MadeDevice>();
     const char* wish = std::getenv("SCONCE_VALIDATION");
@@ -340,6 +340,7 @@ Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std:
     queue.pQueuePriorities = &priority;
     FeatureChain features;
     for (const auto& feature : features.needed()) *feature.value = VK_TRUE;
+    features.v13.pNext = extensionFeatures;
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.all};
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;

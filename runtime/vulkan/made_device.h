@@ -35,8 +35,9 @@ struct MadeDevice
 };
 
 /// @param instanceExtensions, deviceExtensions  names, that the instance and the device get beside what the library needs
+/// @param features  the chain of what those extensions' features are, enabled
 /// Errors: as OwnDevice::create(); missingFeature where an extension is none of the loader's, or of the device's: named.
 Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std::span<const char* const> instanceExtensions = {},
-                                               std::span<const char* const> deviceExtensions = {});
+                                               std::span<const char* const> deviceExtensions = {}, void* features = nullptr);
 
 } // namespace sconce

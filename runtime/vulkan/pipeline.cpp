@@ -133,7 +133,7 @@ Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_
 }
 
 Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
-                                   std::span<const ShaderConstant> constants)
+                                   std::span<const ShaderConstant> constants, VkPipelineCreateFlags flags)
 {
     Pipeline made;
     made.gpu = &gpu;
@@ -143,6 +143,7 @@ Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDes
     if (module.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", module.result);
     const Specialization specialization(constants);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+    info.flags = flags;
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
     info.layout = made.pipelineLayout.get();
     const VkResult result =

@@ -58,7 +58,7 @@ class Pipeline
 public:
     /// @param constants  those with an id that the shader lacks change nothing
     static Result<Pipeline> compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
-                                    std::span<const ShaderConstant> constants = {});
+                                    std::span<const ShaderConstant> constants = {}, VkPipelineCreateFlags flags = 0);
 
     struct Graphics
     {
