@@ -123,6 +123,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(roughness),
                                               rowOf(frameSeed),
                                               rowOf(drawnFrames),
+                                              rowOf(warmUpSeconds),
                                               rowOf(width),
                                               rowOf(height),
                                               rowOf(verticalFov),

@@ -566,6 +566,15 @@ inline constexpr Knob<uint32_t> drawnFrames{.name = "frames",
                                             .most = 1000,
                                             .unit = "frames",
                                             .what = "Draws the frame N times and reports the median of the times"};
+inline constexpr Knob<float> warmUpSeconds{
+    .name = "warm-up",
+    .option = "render --warm-up",
+    .value = 0.0f,
+    .least = 0.0f,
+    .most = 60.0f,
+    .unit = "seconds",
+    .what = "Draws frames for so long that don't count, before those that do: a GPU that was idle has its full "
+            "clock after a second or two"};
 inline constexpr Knob<uint32_t> width{.name = "width",
                                       .option = "render --size",
                                       .member = "RenderSettings::width",

@@ -11,10 +11,10 @@ void main()
 {
     Texel t = texelOfInvocation();
     if (!t.inside) return;
-    LiveTexel known = push.live.data.texels.value[t.index];
+    LiveTexel known = LiveTexels(push.live.data.texels).value[t.index];
     if ((known.normal & kSurfaceKnown) == 0u)
     {
-        push.live.data.sentNext.word[t.index] = push.live.data.bounced.word[t.index] = 0u;
+        BakeWords(push.live.data.sentNext).word[t.index] = BakeWords(push.live.data.bounced).word[t.index] = 0u;
         return;
     }
     bool leans = field.surfaceDirections != 0u;
@@ -31,20 +31,20 @@ void main()
     Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.links; ++i)
     {
-        uint link = push.live.data.links.word[t.probe * push.links * texelsOfProbe() + i * texelsOfProbe() + t.ofProbe];
+        uint link = BakeWords(push.live.data.links).word[t.probe * push.links * texelsOfProbe() + i * texelsOfProbe() + t.ofProbe];
         if (!countEnd(ends, link)) continue;
         vec3 brought = broughtBy(link);
         sum += brought;
         if (leans) slopes += luminance(brought) * slopeOf(gatherDirection(tangents, pixelOfTexel(uvec3(t.at)), i, grazing), normal);
     }
     vec3 light = min(perRay(ends) * sum, vec3(kMostStored));
-    push.live.data.bounced.word[t.index] = packSharedExponent(light);
+    BakeWords(push.live.data.bounced).word[t.index] = packSharedExponent(light);
     if (leans)
     {
         float all = luminance(sum);
-        push.live.data.tilts.word[t.index] = packTilt(all > 0.0 ? alongPlane(slopes, normal) / all : vec2(0.0));
+        BakeWords(push.live.data.tilts).word[t.index] = packTilt(all > 0.0 ? alongPlane(slopes, normal) / all : vec2(0.0));
     }
-    vec3 direct = unpackSharedExponent(push.live.data.direct.word[t.index]);
-    push.live.data.sentNext.word[t.index] =
+    vec3 direct = unpackSharedExponent(BakeWords(push.live.data.direct).word[t.index]);
+    BakeWords(push.live.data.sentNext).word[t.index] =
         packSharedExponent(min(min(unpackRootOfColor(known.albedo), vec3(kMostLiveAlbedo)) * light + unpackSharedExponent(known.direct) * direct, vec3(kMostStored)));
 }

@@ -13,7 +13,7 @@ const uint kLightStream = 9u;
 
 vec3 given(uint i, vec3 point, vec3 normal, vec3 plane, float grazing, out DeltaLight light)
 {
-    GpuLight of = push.live.data.lights.light[i];
+    GpuLight of = LiveLights(push.live.data.lights).light[i];
     light = deltaLightAt(of, of.type, point, 2.0 * field.diagonal);
     float cosine = max(dot(normal, light.toLight), 0.0);
     return dot(plane, light.toLight) > 0.0 ? cosine * takenAlong(cosine, grazing) * light.irradiance : vec3(0.0);
@@ -55,7 +55,7 @@ void main()
 {
     Texel t = texelOfInvocation();
     if (!t.inside) return;
-    LiveTexel known = push.live.data.texels.value[t.index];
+    LiveTexel known = LiveTexels(push.live.data.texels).value[t.index];
     vec3 sum = vec3(0.0);
     float points = 0.0;
     if ((known.normal & kSurfaceKnown) != 0u)
@@ -73,5 +73,5 @@ void main()
             points += 1.0;
         }
     }
-    push.live.data.direct.word[t.index] = packSharedExponent(min(sum / (kBrdfPi * max(points, 1.0)), vec3(kMostStored)));
+    BakeWords(push.live.data.direct).word[t.index] = packSharedExponent(min(sum / (kBrdfPi * max(points, 1.0)), vec3(kMostStored)));
 }

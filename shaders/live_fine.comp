@@ -11,8 +11,8 @@ layout(scalar, push_constant) uniform Push { LivePush push; };
 
 void light(uint index)
 {
-    uint texel = push.live.data.refined.word[index / kFineWords], fine = index % kFineWords, side = field.surfaceSize;
-    uint probe = texel / (6u * side * side), word = push.live.data.surface.word[texel];
+    uint texel = BakeWords(push.live.data.refined).word[index / kFineWords], fine = index % kFineWords, side = field.surfaceSize;
+    uint probe = texel / (6u * side * side), word = BakeWords(push.live.data.surface).word[texel];
     int face = int(texel / (side * side) % 6u), x = int(texel % side), y = int(texel / side % side);
     if (fine > 0u)
     {
@@ -26,12 +26,12 @@ void light(uint index)
             ivec2 there = ivec2(low) + ivec2(tap & 1, tap >> 1);
             float weight = ((tap & 1) != 0 ? f.x : 1.0 - f.x) * ((tap >> 1) != 0 ? f.y : 1.0 - f.y);
             if (!isSameSurface(own.at, own.normal, surfacePointAt(probe, face, there.x, there.y), kSurfaceBend)) continue;
-            sum += weight * unpackSharedExponent(push.live.data.surface.word[surfaceIndex(probe, face, there.x, there.y)]);
+            sum += weight * unpackSharedExponent(BakeWords(push.live.data.surface).word[surfaceIndex(probe, face, there.x, there.y)]);
             weights += weight;
         }
         if (weights > kSurfaceLeast) word = packKnownLight(sum / weights);
     }
-    push.live.data.surface.word[refinedWords() + kFineWords * (surfaceWord(texel) - kRefinedWord) + fine] = word;
+    BakeWords(push.live.data.surface).word[refinedWords() + kFineWords * (surfaceWord(texel) - kRefinedWord) + fine] = word;
 }
 
 void main()

@@ -37,7 +37,7 @@ vec3 lobeMean(uint side, vec3 axis, float width)
 
 void main()
 {
-    uint probe = push.live.data.probes.word[push.first + gl_GlobalInvocationID.y], words = probe * kPrefilteredWords;
+    uint probe = BakeWords(push.live.data.probes).word[push.first + gl_GlobalInvocationID.y], words = probe * kPrefilteredWords;
     uint output_ = gl_GlobalInvocationID.x; // of the coarser levels, then of the irradiance
     const uint kOfLevel1 = kFine * kFine, kOfLevel2 = kCoarse * kCoarse, kOfLevel3 = kOfLevel2 / 4u;
     uint side = gl_WorkGroupID.x * kLiveGroup < kOfLevel1 ? kFine : kCoarse, factor = kPrefilteredSize / side;
@@ -46,7 +46,7 @@ void main()
         uvec2 corner = factor * uvec2(i % side, i / side);
         vec3 sum = vec3(0.0);
         for (uint y = 0u; y < factor; ++y)
-            for (uint x = 0u; x < factor; ++x) sum += unpackRadiance(push.live.data.prefiltered.word[words + (corner.y + y) * kPrefilteredSize + corner.x + x]);
+            for (uint x = 0u; x < factor; ++x) sum += unpackRadiance(BakeWords(push.live.data.prefiltered).word[words + (corner.y + y) * kPrefilteredSize + corner.x + x]);
         joined[i] = sum / float(factor * factor);
     }
     barrier(); // the map is joined by all
@@ -56,11 +56,11 @@ void main()
         uint level = output_ < kOfLevel1 ? 1u : (output_ < kOfLevel1 + kOfLevel2 ? 2u : 3u);
         uint own = output_ - (level > 1u ? kOfLevel1 : 0u) - (level > 2u ? kOfLevel2 : 0u), n = kPrefilteredSize >> level;
         vec3 axis = directionFromOctahedral((vec2(own % n, own / n) + 0.5) / float(n));
-        push.live.data.prefiltered.word[words + output_] = packRadiance(lobeMean(side, axis, kFinestLobe * pow(kLobeGrowth, float(level))));
+        BakeWords(push.live.data.prefiltered).word[words + output_] = packRadiance(lobeMean(side, axis, kFinestLobe * pow(kLobeGrowth, float(level))));
         return;
     }
     uint texel = output_ - kOfLevel1 - kOfLevel2 - kOfLevel3;
     if (texel >= kIrradianceSize * kIrradianceSize) return;
     vec3 axis = directionFromOctahedral((vec2(texel % kIrradianceSize, texel / kIrradianceSize) + 0.5) / float(kIrradianceSize));
-    push.live.data.irradiance.word[irradianceIndex(probe, texel)] = packRadiance(lobeMean(side, axis, 0.0));
+    BakeWords(push.live.data.irradiance).word[irradianceIndex(probe, texel)] = packRadiance(lobeMean(side, axis, 0.0));
 }

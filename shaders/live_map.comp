@@ -12,7 +12,7 @@ const int kSubsamples = 2; // a side
 
 void main()
 {
-    uint probe = push.live.data.probes.word[push.first + gl_GlobalInvocationID.z];
+    uint probe = BakeWords(push.live.data.probes).word[push.first + gl_GlobalInvocationID.z];
     vec3 sum = vec3(0.0);
     for (int i = 0; i < kSubsamples * kSubsamples; ++i)
     {
@@ -21,8 +21,8 @@ void main()
         int face = dominantFace(direction);
         vec3 uvw = faceCoordinates(face, direction);
         ivec2 at = clamp(ivec2((uvw.xy / uvw.z * 0.5 + 0.5) * float(field.surfaceSize)), ivec2(0), ivec2(int(field.surfaceSize) - 1));
-        sum += unpackSharedExponent(push.live.data.sent.word[surfaceIndex(probe, face, at.x, at.y)]);
+        sum += unpackSharedExponent(BakeWords(push.live.data.sent).word[surfaceIndex(probe, face, at.x, at.y)]);
     }
-    push.live.data.prefiltered.word[probe * kPrefilteredWords + gl_GlobalInvocationID.y * kPrefilteredSize + gl_GlobalInvocationID.x] =
+    BakeWords(push.live.data.prefiltered).word[probe * kPrefilteredWords + gl_GlobalInvocationID.y * kPrefilteredSize + gl_GlobalInvocationID.x] =
         packRadiance(sum / float(kSubsamples * kSubsamples));
 }

@@ -17,11 +17,11 @@ void light(uint place)
     Ends ends = Ends(0.0, 0.0, 0.0);
     for (uint i = 0u; i < push.links; ++i)
     {
-        uint link = push.live.data.placeLinks.word[i * push.places + place];
+        uint link = BakeWords(push.live.data.placeLinks).word[i * push.places + place];
         if (countEnd(ends, link))
-            sum += push.live.data.tints.value[tintOfLink(link)].xyz * unpackSharedExponent(push.live.data.sent.word[texelOfLink(link)]);
+            sum += SurfaceFloats(push.live.data.tints).value[tintOfLink(link)].xyz * unpackSharedExponent(BakeWords(push.live.data.sent).word[texelOfLink(link)]);
     }
-    push.live.data.surface.word[push.live.data.places.word[place]] = packKnownLight(perRay(ends) * sum);
+    BakeWords(push.live.data.surface).word[BakeWords(push.live.data.places).word[place]] = packKnownLight(perRay(ends) * sum);
 }
 
 void main()

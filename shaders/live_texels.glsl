@@ -23,7 +23,7 @@ Texel texelOfInvocation()
 {
     Texel t;
     uvec3 id = gl_GlobalInvocationID;
-    t.probe = push.live.data.probes.word[push.first + id.z / 6u];
+    t.probe = BakeWords(push.live.data.probes).word[push.first + id.z / 6u];
     t.at = ivec3(id.xy, id.z % 6u);
     t.ofProbe = (uint(t.at.z) * field.surfaceSize + id.y) * field.surfaceSize + id.x;
     t.index = t.probe * texelsOfProbe() + t.ofProbe;
@@ -32,4 +32,4 @@ Texel texelOfInvocation()
 }
 
 /// The radiance that a link brings.
-vec3 broughtBy(uint link) { return push.live.data.tints.value[tintOfLink(link)].xyz * unpackSharedExponent(push.live.data.sent.word[texelOfLink(link)]); }
+vec3 broughtBy(uint link) { return SurfaceFloats(push.live.data.tints).value[tintOfLink(link)].xyz * unpackSharedExponent(BakeWords(push.live.data.sent).word[texelOfLink(link)]); }

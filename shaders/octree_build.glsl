@@ -13,9 +13,9 @@ Candidates candidates;
 void readSettings()
 {
     build = push.settings.inputs.build;
-    maps = push.settings.inputs.distance;
-    probes = push.settings.inputs.probes;
-    candidates = push.settings.inputs.candidates;
+    maps = MapWords(push.settings.inputs.distance);
+    probes = Probes(push.settings.inputs.probes);
+    candidates = Candidates(push.settings.inputs.candidates);
 }
 uint distanceWord(uint index) { return maps.word[index]; }
 vec3 probeCentre(uint probe) { return probes.probe[probe].centre; }

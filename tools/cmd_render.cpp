@@ -46,6 +46,7 @@ struct RenderOptions : FrameChoice
     bool fromField = false;
     float stereo = 0.0f;     // metres between the eyes; 0: one
     std::vector<float> lens; // k1, k2
+    float warmUp = knobs::warmUpSeconds.value;
     uint32_t width = knobs::width.value, height = knobs::height.value, frames = knobs::drawnFrames.value;
 };
 
@@ -89,7 +90,7 @@ struct Drawn
 };
 
 Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, const RenderSettings& settings, const Camera& camera,
-                         uint32_t frames, const Context& context)
+                         uint32_t frames, float warmUp, const Context& context)
 {
     const Error interrupted{ErrorCode::cancelled, "Interrupted; nothing was written."};
     // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
@@ -99,25 +100,34 @@ Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, 
     const auto renderer = SceneRenderer::create(gpu, *deviceScene, field, settings);
     if (!renderer) return renderer.error();
     const Progress progress = consoleProgress(context);
+    for (const Stopwatch watch; watch.seconds() < warmUp;)
+    {
+        if (!progress("warm up", watch.seconds() / warmUp)) return interrupted;
+        const auto times = (*renderer)->draw(camera);
+        if (!times) return times.error();
+    }
+    (*renderer)->cut(); // no history from the frames that warmed up
     Drawn drawn;
     for (uint32_t i = 0; i < frames; ++i)
     {
         if (!progress("render", double(i) / frames)) return interrupted;
         // With --temporal each frame draws rays of its own for the history to average; without, all are the same picture, timed again.
-        auto frame = (*renderer)->render(camera, settings.effects.temporal ? i : 0);
-        if (!frame) return frame.error();
-        drawn.frame = std::move(*frame);
+        auto times = (*renderer)->draw(camera, settings.effects.temporal ? i : 0);
+        if (!times) return times.error();
         // The sum of the passes, not the wall clock: what the host does between them is not the frame's.
         double sum = 0.0;
-        for (const GpuTimer::Scope& scope : drawn.frame.times)
+        for (const GpuTimer::Scope& scope : *times)
         {
             sum += scope.milliseconds;
             if (!drawn.passMs.contains(scope.name)) drawn.passes.emplace_back(scope.name);
             drawn.passMs[scope.name].push_back(scope.milliseconds);
         }
-        if (!drawn.frame.times.empty()) drawn.frameMs.push_back(sum);
+        if (!times->empty()) drawn.frameMs.push_back(sum);
     }
     progress("render", 1.0);
+    auto frame = (*renderer)->read();
+    if (!frame) return frame.error();
+    drawn.frame = std::move(*frame);
     drawn.deviceBytes = (*renderer)->deviceBytes();
     return drawn;
 }
@@ -205,7 +215,7 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
         scene.lights = day.light.fixed;
         scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
         capScene(scene, plan);
-        const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, context);
+        const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, 0.0f, context);
         if (!drawn) return fail(drawn.error());
         PictureOptions pictures = options.pictures;
         pictures.output = numbered(options.pictures.output, i);
@@ -368,7 +378,7 @@ int runRender(RenderOptions options, const Context& context)
         settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
     }
     if (!lighting->path.empty()) return drawDay(options, **gpu, *scene, *field, *live, *lighting, settings, *camera, *plan, context);
-    const Result<Drawn> drawn = drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, context);
+    const Result<Drawn> drawn = drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, options.warmUp, context);
     if (!drawn) return fail(drawn.error());
 
     // All that the picture depends on, so that it can be drawn again from what stands beside it.
@@ -437,6 +447,7 @@ void addRenderCommand(CLI::App& app, Context& context)
                    described("Draw the shapes, but don't tell indirect light of them: what they would cost and change", words("off")))
         ->needs("--shapes");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
+    addKnob(command, "--warm-up", options->warmUp, knobs::warmUpSeconds);
     addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
     addDims(command, options->dims, "; of a field's groups its light, too");
     command

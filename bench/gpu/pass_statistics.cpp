@@ -195,7 +195,12 @@ Result<Json> compileAll(const Options& options)
         if (!compiled) return compiled.error();
         passes.push_back(std::move(*compiled));
     }
-    return Json{{"device", device->made->name()}, {"passes", passes}};
+    const std::string name = device->made->name();
+    std::string driver;
+    if (const auto devices = deviceSummary())
+        for (const DeviceSummary& one : *devices)
+            if (one.name == name) driver = one.driver;
+    return Json{{"device", name}, {"driver", driver}, {"passes", passes}};
 }
 
 } // namespace

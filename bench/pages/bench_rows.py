@@ -10,6 +10,7 @@
     bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
+    python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -97,10 +98,10 @@ def references(name, scene):
     return f"{name}: {reference['spp']} paths, {reference['bounces']} bounces, of our diffuse relMSE unsure {unsure:.5f}"
 
 
-def write(name, what, commands, notes, rows):
+def write(name, what, commands, notes, rows, machine="Mesa's software Vulkan, llvmpipe, LLVM 15, 2 cores"):
     commit = subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
     lines = ",\n".join(f"  {json.dumps(key)}: {json.dumps(row)}" for key, row in rows.items())
-    head = {"what": what, "command": "; ".join(commands), "commit": commit, "machine": "Mesa's software Vulkan, llvmpipe, LLVM 15, 2 cores", "notes": notes}
+    head = {"what": what, "command": "; ".join(commands), "commit": commit, "machine": machine, "notes": notes}
     text = json.dumps(head, indent=1)[:-2] + ',\n "rows": {\n' + lines + "\n }\n}\n"
     json.loads(text)
     (ROOT / "bench/results" / name).write_text(text)
@@ -353,6 +354,44 @@ def effects(arguments):
     write("effects_passes.json", "Milliseconds a pass of the table of effects", ["bench/pages/effects_table.sh"], [], passes)
 
 
+def gpu(arguments):
+    """Milliseconds of each pass of frames, and rays a second of tracers, of a kit's run on a GPU."""
+    kit = json.loads(Path(arguments[0]).read_text())
+    parts, device = kit["parts"], kit["parts"]["doctor"]["result"]["devices"][0]
+    machine = f"{device['name']}, {device['driver']}"
+    clocks = [parts[name]["clock_mhz"] for name in parts if parts[name]["clock_mhz"] and name.startswith(("frame", "glossy", "race"))]
+    notes = [f"frames of {kit['size']} but where a name says 4k, {kit['frames']} timed after {kit['warm_seconds']} s of others; the median counts",
+             "clock at the start of a part, its median and its most, MHz: " + ("; ".join(f"{name} {parts[name]['clock_mhz']}" for name in parts if name.startswith(("frame", "glossy", "race"))) if clocks else "not said by the driver")]
+    frames = {name: part["result"]["passes_ms"] for name, part in parts.items() if name.startswith(("frame", "glossy")) and part["result"]}
+    passes = list(dict.fromkeys(one for times in frames.values() for one in times))
+    host = ("G-buffer", "direct light", "compose")  # what a renderer has anyway
+    rows = {slug(one): {"label": one} | {slug(name): f"{times[one]:.3f}" for name, times in frames.items() if one in times} for one in passes}
+    rows["indirect"] = {"label": "indirect light: all but G-buffer, direct light, compose"} | {
+        slug(name): f"{sum(ms for one, ms in times.items() if one not in host):.2f}" for name, times in frames.items()}
+    write("gpu_frames.json", "Milliseconds of each pass on a GPU", ["bench/gpu/bundle.sh", "sconce-gpu-kit/run.sh", "bench_rows.py gpu"], notes, rows, machine)
+    labels = {"ours": "Sconce", "b0plus-octree": "B0+, same probes and lists", "wang": "W', same probes and lists"}
+    rows = {}
+    raced, cold = ({entry["tracer"]: entry for entry in parts[name]["result"] or []} for name in ("race", "race_cold"))
+    for tracer, entry in raced.items():
+        rate = lambda of, order: f"{of[order]['mrays_per_s']:.0f}"
+        ratio = lambda of, order: f"{of[tracer][order]['median'] / of['b0plus-octree'][order]['median']:.2f}"
+        rows[slug(tracer)] = {"label": labels[tracer], "right_1": f"{100 * entry['right_1']:.2f}", "right_02": f"{100 * entry['right_02']:.2f}", "reads": f"{entry['distance_reads']['mean']:.1f}",
+                              "order": rate(entry, "coherent_ms"), "shuffled": rate(entry, "incoherent_ms"), "ratio_order": ratio(raced, "coherent_ms"), "ratio_shuffled": ratio(raced, "incoherent_ms")}
+        if tracer in cold:
+            rows[slug(tracer)] |= {"cold": rate(cold[tracer], "coherent_ms"), "ratio_cold": ratio(cold, "coherent_ms")}
+    for name in parts:  # what a GPU answers otherwise than the processor
+        if name.startswith("rays_") and parts[name]["result"]:
+            rows[slug(name)] = {"label": name, "rays": str(parts[name]["result"][0]["rays"]), "differs": str(parts[name]["result"][0]["cpu_differs"])}
+    for name in parts:
+        if name.startswith("picture_") and parts[name]["result"]:
+            rows[slug(name)] = {"label": name, "relmse": f"{parts[name]['result']['relmse']:.1e}"}
+    if parts["passes"]["result"]:
+        rows |= {slug(one["pass"]): {"label": one["pass"]} | {slug(key): str(value) for key, value in one["statistics"].items() if "ash" not in key} for one in parts["passes"]["result"]["passes"]}
+    write("gpu_rays.json", "Rays, answers and passes on a GPU", ["bench/gpu/bundle.sh", "sconce-gpu-kit/run.sh", "bench_rows.py gpu"],
+          notes + ["million rays a second: rays of one camera's picture, in its order and shuffled; cold: 256 MiB are written before each pass",
+                   "differs: rays that the same text on the machine's processor answers otherwise"], rows, machine)
+
+
 def primary(arguments):
     """A scene's row: shares of rays from the eye, and three of its views as pictures, nearest to a probe first."""
     at, label, views = arguments[0], arguments[1], arguments[2].split(",")
@@ -420,7 +459,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "primary": primary, "primaries": primaries, "moving": moving, "movings": movings}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -16,6 +16,11 @@ namespace
 constexpr size_t kLeastViewpoints = 64; // cameras and interior points the rays' surfaces are seen from
 constexpr size_t kLeastInterior = 6;    // of them in the reachable space
 
+GlossyRaySettings judgedRays(uint32_t count, uint64_t seed)
+{
+    return {.count = count, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = seed};
+}
+
 } // namespace
 
 Result<RaySet> sceneRays(const Scene& scene, const RayScene& truth, uint32_t count, uint64_t seed)
@@ -30,7 +35,12 @@ Result<RaySet> sceneRays(const Scene& scene, const RayScene& truth, uint32_t cou
     Random random(seed, 77);
     std::vector<vec3> points;
     while (points.size() < wanted) points.push_back(space->randomPoint(random));
-    return glossyRays(truth, scene.cameras, points, {.count = count, .alphaLow = 0.1f, .alphaHigh = 0.3f, .seed = seed});
+    return glossyRays(truth, scene.cameras, points, judgedRays(count, seed));
+}
+
+Result<RaySet> cameraRays(const Camera& camera, const RayScene& truth, uint32_t count, uint64_t seed)
+{
+    return glossyRays(truth, {&camera, 1}, {}, judgedRays(count, seed));
 }
 
 double embreeMilliseconds(const RayScene& scene, const RaySet& rays)

@@ -10,6 +10,9 @@ namespace sconce
 /// seed.) Errors: badArgument, badInput (a scene without surfaces or free space).
 Result<RaySet> sceneRays(const Scene& scene, const RayScene& truth, uint32_t count, uint64_t seed);
 
+/// Such rays from what one camera sees alone: of one frame.
+Result<RaySet> cameraRays(const Camera& camera, const RayScene& truth, uint32_t count, uint64_t seed);
+
 /// Wall-clock milliseconds that Embree takes for the distances of the rays on all cores, robust, the faster of one and eight rays a call.
 double embreeMilliseconds(const RayScene& scene, const RaySet& rays);
 

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <sstream>
 #include <variant>
@@ -143,7 +144,7 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData f
     auto tracer = makeRayTracer(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : Spirv());
     if (!tracer) return tracer.error();
     made->tracer.emplace(std::move(*tracer));
-    auto timer = GpuTimer::create(gpu, 1);
+    auto timer = GpuTimer::create(gpu, kMostPasses);
     if (!timer) return timer.error();
     made->timer.emplace(std::move(*timer));
     return made;
@@ -264,26 +265,47 @@ Result<double> TracedMethod::time(bool inOrder)
     }
 }
 
+Status TracedMethod::writeBetween(uint64_t bytes)
+{
+    between = Buffer();
+    orderedPasses = shuffledPasses = 1;
+    if (bytes == 0) return success();
+    auto made = gpu.makeBuffer(bytes, 0, MemoryUse::device, "memory written between passes");
+    if (!made) return made.error();
+    between = std::move(*made);
+    return success();
+}
+
+void TracedMethod::recordPasses(VkCommandBuffer cmd, const Buffer& rays, uint32_t passes)
+{
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, fill = VK_PIPELINE_STAGE_2_CLEAR_BIT;
+    timer->reset(cmd);
+    if (!between) timer->begin(cmd, "trace");
+    for (uint32_t pass = 0; pass < passes; ++pass)
+    {
+        if (pass > 0)
+            memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute | fill,
+                          VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+        if (between)
+        {
+            gpu.vk.CmdFillBuffer(cmd, between.handle(), 0, VK_WHOLE_SIZE, pass);
+            memoryBarrier(gpu, cmd, fill, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute | fill,
+                          VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+            timer->begin(cmd, "trace");
+        }
+        recordTrace(*tracer, cmd, rays, hitBuffer, timedRays);
+        if (between) timer->end(cmd);
+    }
+    if (!between) timer->end(cmd);
+}
+
 Result<double> TracedMethod::timePasses(const Buffer& rays, uint32_t passes)
 {
-    auto status = gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            timer->reset(cmd);
-            timer->begin(cmd, "trace");
-            for (uint32_t pass = 0; pass < passes; ++pass)
-            {
-                if (pass > 0)
-                    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                                  VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-                recordTrace(*tracer, cmd, rays, hitBuffer, timedRays);
-            }
-            timer->end(cmd);
-        });
+    auto status = gpu.submit([&](VkCommandBuffer cmd) { recordPasses(cmd, rays, passes); });
     if (!status) return status.error();
     const std::vector<GpuTimer::Scope> scopes = timer->read();
     if (scopes.empty()) return Error{ErrorCode::missingFeature, "this device's queue has no timestamps; times need them"};
-    return scopes.front().milliseconds;
+    return std::transform_reduce(scopes.begin(), scopes.end(), 0.0, std::plus<>(), [](const GpuTimer::Scope& s) { return s.milliseconds; });
 }
 
 } // namespace sconce

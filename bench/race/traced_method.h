@@ -67,11 +67,14 @@ public:
     /// One run over the prepared rays, milliseconds of the trace pass alone by the device's clock. A fast device goes over them again until
     /// kLeastTimed have passed, one pass after the other, and the mean counts: what lasts less is mostly the start of a pass.
     Result<double> time(bool inOrder);
+    /// The same with caches that hold nothing of the field: this many bytes are written before each pass, and aren't timed. 0: none are.
+    Status writeBetween(uint64_t bytes);
     static constexpr double kLeastTimed = 5.0; // milliseconds
-    static constexpr uint32_t kMostPasses = 4096;
+    static constexpr uint32_t kMostPasses = 256;
 
 private:
     Result<double> timePasses(const Buffer& rays, uint32_t passes); // milliseconds of all of them
+    void recordPasses(VkCommandBuffer cmd, const Buffer& rays, uint32_t passes);
     explicit TracedMethod(Gpu& device) : gpu(device) {}
     Gpu& gpu;
     std::string label, path;
@@ -81,6 +84,7 @@ private:
     std::optional<RayTracer> tracer;
     std::optional<GpuTimer> timer;
     Buffer orderedRays, shuffledRays, hitBuffer;
+    Buffer between; // written before each pass, or none
     uint32_t timedRays = 0;
     uint32_t orderedPasses = 1, shuffledPasses = 1; // that last kLeastTimed
 };

@@ -1,6 +1,7 @@
 #include "bench/race/tracer_race.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -83,20 +84,30 @@ Status timeAll(std::vector<Row>& rows, std::span<const std::unique_ptr<TracedMet
         shuffled.directions.push_back(rays.directions[i]);
     }
     for (const auto& method : methods)
+    {
         if (auto status = method->prepare(method->raysOf(rays), order); !status) return status;
+        if (auto status = method->writeBetween(uint64_t(settings.cold) << 20); !status) return status;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const auto warm = [&] { return std::chrono::duration<float>(std::chrono::steady_clock::now() - begin).count() >= settings.warmUp; };
+    do
+    {
+        for (const auto& method : methods)
+            for (bool ordered : {true, false})
+                if (const auto milliseconds = method->time(ordered); !milliseconds) return milliseconds.error();
+    } while (!warm());
     Row last;
-    for (uint32_t run = 0; run <= settings.runs; ++run) // the first one warms up
+    for (uint32_t run = 0; run < settings.runs; ++run)
     {
         for (size_t m = 0; m < methods.size(); ++m)
             for (bool ordered : {true, false})
             {
                 const auto milliseconds = methods[m]->time(ordered);
                 if (!milliseconds) return milliseconds.error();
-                if (run > 0) (ordered ? rows[m].speed.ordered : rows[m].speed.shuffled).push_back(*milliseconds);
+                (ordered ? rows[m].speed.ordered : rows[m].speed.shuffled).push_back(*milliseconds);
             }
         if (!outside) continue;
         const double ordered = outside->milliseconds(rays), mixed = outside->milliseconds(shuffled);
-        if (run == 0) continue;
         last.speed.ordered.push_back(ordered);
         last.speed.shuffled.push_back(mixed);
     }

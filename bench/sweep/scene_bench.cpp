@@ -438,9 +438,10 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
         json["rays"] = raysJson(*score);
     }
     // A filter over time is judged when its history has filled, not by its first frame.
-    Result<RenderedFrame> frame = live.renderer->render(camera);
-    const uint32_t frames = point.settings.frame.effects.temporal ? kTemporalFrames : 1;
-    for (uint32_t i = 1; i < frames && frame; ++i) frame = live.renderer->render(camera, i);
+    const uint32_t last = point.settings.frame.effects.temporal ? kTemporalFrames - 1 : 0;
+    for (uint32_t i = 0; i < last; ++i)
+        if (const auto drawn = live.renderer->draw(camera, i); !drawn) return drawn.error();
+    Result<RenderedFrame> frame = live.renderer->render(camera, last);
     if (!frame) return frame.error();
     if (point.settings.filteredPaths()) // direct light and emission are the paths' own: there is nothing to filter
     {

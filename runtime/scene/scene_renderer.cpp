@@ -481,7 +481,7 @@ uint64_t SceneRenderer::deviceBytes() const
     return indirect->deviceBytes() + (scratch ? 16 * pixels : 0) + denoiser.deviceBytes();
 }
 
-Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
+Result<std::vector<GpuTimer::Scope>> SceneRenderer::draw(const Camera& camera, uint32_t index)
 {
     if (const std::string fault = cameraFault(camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     // Room for every pass that a frame can have, 13.
@@ -494,8 +494,15 @@ Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index
             record(cmd, camera, settings.seed + index, &*timer);
         });
     if (!status) return status.error();
+    return timer->read();
+}
+
+Result<RenderedFrame> SceneRenderer::render(const Camera& camera, uint32_t index)
+{
+    auto times = draw(camera, index);
+    if (!times) return times.error();
     auto frame = read();
-    if (frame) frame->times = timer->read();
+    if (frame) frame->times = std::move(*times);
     return frame;
 }
 

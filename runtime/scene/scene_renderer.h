@@ -60,8 +60,10 @@ public:
                                                          const RenderSettings& settings);
     /// Records G-buffer, direct light, indirect light and composition.
     void record(VkCommandBuffer cmd, const Camera& camera, uint32_t seed, GpuTimer* timer);
-    /// Records, submits, waits and reads every picture back.
+    /// Records, submits and waits; milliseconds a pass, by the GPU's clock. Without a pause between frames, as a host draws.
     /// @param index  of the frame in a sequence: added to the seed
+    Result<std::vector<GpuTimer::Scope>> draw(const Camera& camera, uint32_t index = 0);
+    /// The same, and reads every picture back.
     Result<RenderedFrame> render(const Camera& camera, uint32_t index = 0);
     /// Reads the pictures of the last recorded frame back, once it was submitted; without times. Submits and waits.
     Result<RenderedFrame> read();

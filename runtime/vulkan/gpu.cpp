@@ -187,6 +187,21 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     return made;
 }
 
+Result<VkDescriptorSetLayout> Gpu::setLayout(std::span<const VkDescriptorSetLayoutBinding> bindings)
+{
+    std::vector<std::array<uint32_t, 4>> key;
+    for (const VkDescriptorSetLayoutBinding& one : bindings)
+        key.push_back({one.binding, uint32_t(one.descriptorType), one.descriptorCount, one.stageFlags});
+    if (const auto found = setLayouts.find(key); found != setLayouts.end()) return found->second.get();
+    VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+    info.bindingCount = uint32_t(bindings.size());
+    info.pBindings = bindings.data();
+    SetLayout made;
+    const VkResult result = made.make(*this, vk.CreateDescriptorSetLayout, host.device, &info, host.allocationCallbacks);
+    if (result != VK_SUCCESS) return failure("vkCreateDescriptorSetLayout", result);
+    return setLayouts.emplace(std::move(key), std::move(made)).first->second.get();
+}
+
 Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
 {
     // One command buffer serves all submits: each is waited for, so that it is idle whenever this is called.

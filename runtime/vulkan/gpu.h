@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -119,6 +121,9 @@ public:
         return buffer;
     }
     void releaseStaging() { staging = Buffer(); }
+    /// The one layout of such bindings, which lives as long as this: a pipeline must not outlive the layouts that it was made with, and one
+    /// that was made with a light field's is used with the next field's.
+    Result<VkDescriptorSetLayout> setLayout(std::span<const VkDescriptorSetLayoutBinding> bindings);
 
     Error failure(const char* call, VkResult result) const;
 
@@ -132,6 +137,8 @@ private:
     VkCommandBuffer commands = VK_NULL_HANDLE;
     Handle<VkFence, &VulkanFunctions::DestroyFence> fence;
     Buffer staging;
+    using SetLayout = Handle<VkDescriptorSetLayout, &VulkanFunctions::DestroyDescriptorSetLayout>;
+    std::map<std::vector<std::array<uint32_t, 4>>, SetLayout> setLayouts; // by binding, type, count and stages of each
     std::unique_ptr<NanScan> scan;
 };
 

@@ -26,7 +26,8 @@ struct HostVulkan
     VkQueue queue = VK_NULL_HANDLE;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
     const VkAllocationCallbacks* allocationCallbacks = nullptr;
-    uint64_t memoryBudget = 0; // bytes of device memory the library may hold; 0: 80 % of the largest device-local heap
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE; // what compiled pipelines are looked up in and added to; without one a driver's own
+    uint64_t memoryBudget = 0;                      // bytes of device memory the library may hold; 0: 80 % of the largest device-local heap
 
     // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called.
     std::function<VkResult(const VkMemoryAllocateInfo&, VkDeviceMemory&)> allocateMemory;

@@ -18,24 +18,20 @@ Result<DescriptorSet> DescriptorSet::create(Gpu& gpu, std::span<const Binding> b
         layout.push_back({binding.binding, binding.type, 1, binding.stages, nullptr});
         sizes.push_back({binding.type, 1});
     }
-    VkDescriptorSetLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-    layoutInfo.bindingCount = uint32_t(layout.size());
-    layoutInfo.pBindings = layout.data();
-    VkResult result =
-        made.setLayout.make(gpu, gpu.vk.CreateDescriptorSetLayout, gpu.host.device, &layoutInfo, gpu.host.allocationCallbacks);
-    if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorSetLayout", result);
+    const auto found = gpu.setLayout(layout);
+    if (!found) return found.error();
+    made.setLayout = *found;
     // A pool for one set: the set lives and dies with it, beside all others.
     VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     poolInfo.maxSets = 1;
     poolInfo.poolSizeCount = uint32_t(sizes.size());
     poolInfo.pPoolSizes = sizes.data();
-    result = made.pool.make(gpu, gpu.vk.CreateDescriptorPool, gpu.host.device, &poolInfo, gpu.host.allocationCallbacks);
+    VkResult result = made.pool.make(gpu, gpu.vk.CreateDescriptorPool, gpu.host.device, &poolInfo, gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateDescriptorPool", result);
     VkDescriptorSetAllocateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     setInfo.descriptorPool = made.pool.get();
     setInfo.descriptorSetCount = 1;
-    const VkDescriptorSetLayout setLayout = made.setLayout.get();
-    setInfo.pSetLayouts = &setLayout;
+    setInfo.pSetLayouts = &made.setLayout;
     result = gpu.vk.AllocateDescriptorSets(gpu.host.device, &setInfo, &made.set);
     if (result != VK_SUCCESS) return gpu.failure("vkAllocateDescriptorSets", result);
     return made;
@@ -146,8 +142,8 @@ Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDes
     info.flags = flags;
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
     info.layout = made.pipelineLayout.get();
-    const VkResult result =
-        made.pipeline.make(gpu, gpu.vk.CreateComputePipelines, gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks);
+    const VkResult result = made.pipeline.make(gpu, gpu.vk.CreateComputePipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
+                                               gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateComputePipelines", result);
     return made;
 }
@@ -212,8 +208,8 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     info.pColorBlendState = &color;
     info.pDynamicState = &dynamic;
     info.layout = made.pipelineLayout.get();
-    const VkResult result =
-        made.pipeline.make(gpu, gpu.vk.CreateGraphicsPipelines, gpu.host.device, VK_NULL_HANDLE, 1, &info, gpu.host.allocationCallbacks);
+    const VkResult result = made.pipeline.make(gpu, gpu.vk.CreateGraphicsPipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
+                                               gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateGraphicsPipelines", result);
     return made;
 }

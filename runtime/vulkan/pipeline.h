@@ -9,7 +9,7 @@
 namespace sconce
 {
 
-/// One descriptor set with its layout and pool. Write before it is first bound; the written resources must outlive its use.
+/// One descriptor set with its pool. Write before it is first bound; the written resources must outlive its use.
 class DescriptorSet
 {
 public:
@@ -21,7 +21,7 @@ public:
     };
     static Result<DescriptorSet> create(Gpu& gpu, std::span<const Binding> bindings);
 
-    VkDescriptorSetLayout layout() const { return setLayout.get(); }
+    VkDescriptorSetLayout layout() const { return setLayout; } // the Gpu's, of all sets with these bindings
     VkDescriptorSet handle() const { return set; }
     void write(uint32_t binding, const Buffer& buffer); // a texel buffer by its view
     void write(uint32_t binding, VkImageView view, VkImageLayout imageLayout, VkSampler sampler = VK_NULL_HANDLE);
@@ -29,7 +29,7 @@ public:
 private:
     VkDescriptorType typeOf(uint32_t binding) const;
     Gpu* gpu = nullptr;
-    Handle<VkDescriptorSetLayout, &VulkanFunctions::DestroyDescriptorSetLayout> setLayout;
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
     Handle<VkDescriptorPool, &VulkanFunctions::DestroyDescriptorPool> pool;
     VkDescriptorSet set = VK_NULL_HANDLE;
     std::vector<Binding> bindings;

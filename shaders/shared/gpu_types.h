@@ -47,7 +47,9 @@ using DeviceAddress = std::uint64_t; // VkDeviceAddress
 #define SCONCE_CONST const
 #define SCONCE_EXACT precise // a compiler must not take (a + b) - a for b
 #define SCONCE_CHECK_SIZE(type, bytes)
-#define SCONCE_ADDRESS(type) type // the buffer_reference of that name
+// The buffer_reference of that name: of push constants. In memory it is a DeviceAddress, since a reference that is loaded is taken to be aligned as what it
+// refers to, and 8 bytes can't be loaded at 4.
+#define SCONCE_ADDRESS(type) type
 #define SCONCE_STRUCTS_BEGIN
 #define SCONCE_STRUCTS_END
 #endif

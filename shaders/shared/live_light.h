@@ -21,26 +21,26 @@ const uint kReachMask = 127u;
 
 SCONCE_BUFFER(LiveTexels, LiveTexel)
 
-/// Device addresses of all that the passes read and write. Light is RGB9E5 where nothing else is said; texels are of all probes.
+/// Device addresses of all that the passes read and write, of which buffer is said (as numbers: SCONCE_ADDRESS in gpu_types.h). Light is RGB9E5 where nothing else is said; texels are of all probes.
 struct LiveData
 {
-    SCONCE_ADDRESS(LiveTexels) texels;
-    SCONCE_ADDRESS(BakeWords) links;       // [probe][link][texel of the probe]
-    SCONCE_ADDRESS(BakeWords) places;      // words of FieldData::surfaceLight that are no texels: a facing of a cell, a hidden surface
-    SCONCE_ADDRESS(BakeWords) placeLinks;  // [link][place]
-    SCONCE_ADDRESS(BakeWords) refined;     // texels that are
-    SCONCE_ADDRESS(SurfaceFloats) tints;   // kTints colours of metals
-    SCONCE_ADDRESS(LiveLights) lights;
-    SCONCE_ADDRESS(BakeWords) probes;      // that this step is about
-    SCONCE_ADDRESS(BakeWords) direct;      // light straight from lights: irradiance / pi
-    SCONCE_ADDRESS(BakeWords) bounced;     // light that surfaces send, before it is filtered
-    SCONCE_ADDRESS(BakeWords) tilts;       // packTilt() of the same; 0: the field has no directions
-    SCONCE_ADDRESS(BakeWords) sent;        // radiance that the texels send
-    SCONCE_ADDRESS(BakeWords) sentNext;    // the same after the bounce
-    SCONCE_ADDRESS(BakeWords) incident;    // direct and bounced light: what rays find
-    SCONCE_ADDRESS(BakeWords) surface;     // the live lights' share of FieldData::surfaceLight
-    SCONCE_ADDRESS(BakeWords) irradiance;  // and of FieldData::irradiance
-    SCONCE_ADDRESS(BakeWords) prefiltered; // and of FieldData::prefiltered
+    DeviceAddress texels; // LiveTexels
+    DeviceAddress links; // BakeWords: [probe][link][texel of the probe]
+    DeviceAddress places; // BakeWords: words of FieldData::surfaceLight that are no texels: a facing of a cell, a hidden surface
+    DeviceAddress placeLinks; // BakeWords: [link][place]
+    DeviceAddress refined; // BakeWords: texels that are
+    DeviceAddress tints; // SurfaceFloats: kTints colours of metals
+    DeviceAddress lights; // LiveLights
+    DeviceAddress probes; // BakeWords: that this step is about
+    DeviceAddress direct; // BakeWords: light straight from lights: irradiance / pi
+    DeviceAddress bounced; // BakeWords: light that surfaces send, before it is filtered
+    DeviceAddress tilts; // BakeWords: packTilt() of the same; 0: the field has no directions
+    DeviceAddress sent; // BakeWords: radiance that the texels send
+    DeviceAddress sentNext; // BakeWords: the same after the bounce
+    DeviceAddress incident; // BakeWords: direct and bounced light: what rays find
+    DeviceAddress surface; // BakeWords: the live lights' share of FieldData::surfaceLight
+    DeviceAddress irradiance; // BakeWords: and of FieldData::irradiance
+    DeviceAddress prefiltered; // BakeWords: and of FieldData::prefiltered
 };
 SCONCE_CHECK_SIZE(LiveData, 136);
 

@@ -46,9 +46,9 @@ SCONCE_CHECK_SIZE(OctreeBuild, 88);
 struct OctreeInputs
 {
     OctreeBuild build;
-    SCONCE_ADDRESS(MapWords) distance;
-    SCONCE_ADDRESS(Probes) probes;
-    SCONCE_ADDRESS(Candidates) candidates; // [region][build.candidates] probe, weight
+    DeviceAddress distance;   // MapWords, as numbers: SCONCE_ADDRESS in gpu_types.h
+    DeviceAddress probes;     // Probes
+    DeviceAddress candidates; // Candidates: [region][build.candidates] probe, weight
 };
 SCONCE_CHECK_SIZE(OctreeInputs, 112);
 #ifndef __cplusplus

@@ -50,8 +50,15 @@ def main():
         expect(len(first) == 2, f"two tracers raced, {len(first)} answered")
         expect(untimed(first) == untimed(again), f"replayed rays have other answers:\n{json.dumps(first, indent=1)}\n{json.dumps(again, indent=1)}")
         expect(first[0]["right_1"] > 0.85, f"ours is wrong: {first[0]}")
+        frame = json.loads(run(ray_accuracy, "cornell", "--field", field, "--json", "--rays", 2000, "--camera", 0).stdout)
+        expect(frame[0]["right_1"] > 0.85 and frame[0]["distance_reads"] != first[0]["distance_reads"], f"rays of one camera are wrong, or those of all: {frame}")
+        refused = run(ray_accuracy, "cornell", "--field", field, "--camera", 99, code=2)
+        expect("--camera is 99" in refused.stderr, f"a camera that isn't there: {refused.stderr}")
         timed = json.loads(run(replay, rays, "--field", field, "--runs", 2, "--timed", 500, "--json").stdout)
         expect(untimed(timed) != timed, f"timed runs have no times: {timed}")
+
+        cold = json.loads(run(replay, rays, "--field", field, "--runs", 2, "--timed", 500, "--cold", 8, "--warm-up", 0.01, "--json").stdout)
+        expect(untimed(cold) == untimed(timed) and "coherent_ms" in cold[0], f"cold caches change answers, or have no times: {cold}")
 
         looks = json.loads(run(primary_rays, "cornell", "--field", field, "--views", 2, "--width", 64, "--height", 36, "--runs", 1).stdout)
         nearest, farthest = (view["to_probe"] for view in looks["views"])
