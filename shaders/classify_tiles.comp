@@ -45,6 +45,9 @@ shared uint found[kMostLookUpLists * 64u];
 uint termsOfList(uint list) { return list == 0u ? kTermsOfFirst : list == 1u ? kTermsOfSecond : list == 2u ? kTermsOfThird : kTermsOfFourth; }
 uint kindOfList(uint list) { return list == 0u ? kKindOfFirst : list == 1u ? kKindOfSecond : list == 2u ? kKindOfThird : kKindOfFourth; }
 
+/// Rows of workgroups that so many look-ups take.
+uint rowsOfLookUps(uint count) { return (count + 64u * kTileRow - 1u) / (64u * kTileRow); }
+
 uint quadPixel(uint first, uint i) { return first + (i & 1u) + (i >> 1) * kTileSide; }
 
 bool isOneSurface(uint first, uint kind)
@@ -118,15 +121,17 @@ void main()
     if (list < kTermCount && (tileTerms & (1u << list)) != 0u)
     {
         uint index = atomicAdd(runs[list].count, 1u);
-        atomicMax(runs[list].y, index / kTileRow + 1u);
-        if (kEveryLog > 0u) atomicMax(sparseRuns[list].y, (index >> kEveryLog) / kTileRow + 1u);
+        // Only the first of a row makes it one more: tiles of the whole picture change these words, one after the other.
+        if (index % kTileRow == 0u) atomicMax(runs[list].y, index / kTileRow + 1u);
+        if (kEveryLog > 0u && index % (kTileRow << kEveryLog) == 0u) atomicMax(sparseRuns[list].y, (index >> kEveryLog) / kTileRow + 1u);
         tiles[list * tileCount + index] = gl_WorkGroupID.x | (gl_WorkGroupID.y << 16);
     }
     barrier(); // the quads' look-ups are all found
     if (invocation < kMostLookUpLists && foundCount[invocation] > 0u)
     {
         foundFirst[invocation] = atomicAdd(lookUpRuns[invocation].count, foundCount[invocation]);
-        atomicMax(lookUpRuns[invocation].y, (foundFirst[invocation] + foundCount[invocation] - 1u) / 64u / kTileRow + 1u);
+        uint rows = rowsOfLookUps(foundFirst[invocation] + foundCount[invocation]);
+        if (rows > rowsOfLookUps(foundFirst[invocation])) atomicMax(lookUpRuns[invocation].y, rows);
     }
     barrier(); // their place in the list is known
     for (uint of = 0u; of < kMostLookUpLists; ++of)

@@ -53,7 +53,8 @@ void leave(LookUp l, bool alone)
 {
     uint count = alone ? uint(l.pixels) : 1u;
     uint index = atomicAdd(lookUpRuns[kRest].count, count);
-    atomicMax(lookUpRuns[kRest].y, (index + count - 1u) / 64u / kTileRow + 1u);
+    uint rows = (index + count + 64u * kTileRow - 1u) / (64u * kTileRow);
+    if (rows > (index + 64u * kTileRow - 1u) / (64u * kTileRow)) atomicMax(lookUpRuns[kRest].y, rows); // as classify_tiles.comp does
     for (uint i = 0u; i < count; ++i)
     {
         uvec2 at = uvec2(pixelOf(l, int(i)));

@@ -329,6 +329,7 @@ int runRender(RenderOptions options, const Context& context)
     Result<RenderSettings> chosen = settingsFor(options, *plan, *data, options.field, diffuse);
     if (!chosen) return fail(chosen.error());
     RenderSettings settings = std::move(*chosen);
+    settings.layers = wantsLayersOfLight(options.pictures.aov);
     settings.width = options.width;
     settings.height = options.height;
     if (!options.drawnOnly) settings.shapes = *shapes;
@@ -411,8 +412,8 @@ int runRender(RenderOptions options, const Context& context)
     json["frame_ms"] = drawn->frameMs.empty() ? Json(nullptr) : Json(median(drawn->frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : drawn->passes) json["passes_ms"][pass] = median(drawn->passMs.at(pass));
-    // Only the rays of reflections are counted; frames without them have no means to give.
-    if (settings.effects.glossy || settings.effects.mirror) addCounts(json, drawn->frame, settings.glossyRays);
+    // Only the rays of reflections are counted, where layers tell what they cost; frames without have no means to give.
+    if (settings.layers && (settings.effects.glossy || settings.effects.mirror)) addCounts(json, drawn->frame, settings.glossyRays);
     addDiffuseFrom(json, drawn->frame);
     if (Status status = options.pictures.write(imagesOf(drawn->frame), json); !status) return fail(status.error());
     // After the pictures are written, so that the cost has that in it.

@@ -1,5 +1,8 @@
 #include "tools/frame_pictures.h"
 
+#include <algorithm>
+#include <string_view>
+
 namespace sconce::tools
 {
 
@@ -27,6 +30,12 @@ const std::vector<std::string>& frameLayers()
                                                     "depth",  "normal",   "albedo",           "roughness",
                                                     "probe",  "handoffs", "fetches",          "unknown"};
     return layers;
+}
+
+bool wantsLayersOfLight(const std::string& aov)
+{
+    constexpr std::string_view kept[] = {"indirect", "probe", "handoffs", "fetches", "unknown"};
+    return aov.empty() || std::ranges::any_of(kept, [&](std::string_view layer) { return aov.find(layer) != std::string::npos; });
 }
 
 ImageSet imagesOf(const RenderedFrame& frame)

@@ -10,7 +10,7 @@
     bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
-    python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote
+    python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote; notes may follow
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -359,16 +359,20 @@ def gpu(arguments):
     kit = json.loads(Path(arguments[0]).read_text())
     parts, device = kit["parts"], kit["parts"]["doctor"]["result"]["devices"][0]
     machine = f"{device['name']}, {device['driver']}"
-    clocks = [parts[name]["clock_mhz"] for name in parts if parts[name]["clock_mhz"] and name.startswith(("frame", "glossy", "race"))]
-    notes = [f"frames of {kit['size']} but where a name says 4k, {kit['frames']} timed after {kit['warm_seconds']} s of others; the median counts",
-             "clock at the start of a part, its median and its most, MHz: " + ("; ".join(f"{name} {parts[name]['clock_mhz']}" for name in parts if name.startswith(("frame", "glossy", "race"))) if clocks else "not said by the driver")]
+    notes = [f"kit of sconce {kit['kit']}: frames of {kit['size']} but where a name says 4k, {kit['frames']} timed after {kit['warm_seconds']} s of others, the median"
+             " counts; effects as the scene calls for, all: every effect over the whole picture, glossy: every pixel at roughness 0.15"]
+    clocks = {name: part["clock_mhz"] for name, part in parts.items() if name.startswith(("frame", "glossy", "race")) and part["clock_mhz"]}
+    notes += arguments[1:]
+    if clocks:
+        medians = [clock[1] for clock in clocks.values()]
+        notes.append(f"clock while times were taken: {min(medians)} to {max(medians)} MHz, medians of its parts")
     frames = {name: part["result"]["passes_ms"] for name, part in parts.items() if name.startswith(("frame", "glossy")) and part["result"]}
     passes = list(dict.fromkeys(one for times in frames.values() for one in times))
     host = ("G-buffer", "direct light", "compose")  # what a renderer has anyway
     rows = {slug(one): {"label": one} | {slug(name): f"{times[one]:.3f}" for name, times in frames.items() if one in times} for one in passes}
     rows["indirect"] = {"label": "indirect light: all but G-buffer, direct light, compose"} | {
         slug(name): f"{sum(ms for one, ms in times.items() if one not in host):.2f}" for name, times in frames.items()}
-    write("gpu_frames.json", "Milliseconds of each pass on a GPU", ["bench/gpu/bundle.sh", "sconce-gpu-kit/run.sh", "bench_rows.py gpu"], notes, rows, machine)
+    write("gpu_frames.json", "Milliseconds of each pass on a GPU", ["bench/gpu/bundle.sh", "bench/gpu/run.sh", "bench_rows.py gpu"], notes, rows, machine)
     labels = {"ours": "Sconce", "b0plus-octree": "B0+, same probes and lists", "wang": "W', same probes and lists"}
     rows = {}
     raced, cold = ({entry["tracer"]: entry for entry in parts[name]["result"] or []} for name in ("race", "race_cold"))
@@ -386,9 +390,11 @@ def gpu(arguments):
         if name.startswith("picture_") and parts[name]["result"]:
             rows[slug(name)] = {"label": name, "relmse": f"{parts[name]['result']['relmse']:.1e}"}
     if parts["passes"]["result"]:
-        rows |= {slug(one["pass"]): {"label": one["pass"]} | {slug(key): str(value) for key, value in one["statistics"].items() if "ash" not in key} for one in parts["passes"]["result"]["passes"]}
-    write("gpu_rays.json", "Rays, answers and passes on a GPU", ["bench/gpu/bundle.sh", "sconce-gpu-kit/run.sh", "bench_rows.py gpu"],
-          notes + ["million rays a second: rays of one camera's picture, in its order and shuffled; cold: 256 MiB are written before each pass",
+        rows |= {slug(one["pass"]): {"label": one["pass"]} | {slug(key): str(value) for key, value in one["statistics"].items() if key in
+                                                                  ("subgroup_size", "Register Count", "Shared Memory Size", "Binary Size", "VGPRs", "Spilled VGPRs", "Instructions")} for one in parts["passes"]["result"]["passes"]}
+    write("gpu_rays.json", "Rays, answers and passes on a GPU", ["bench/gpu/bundle.sh", "bench/gpu/run.sh", "bench_rows.py gpu"],
+          notes + ["million rays a second: rays of one camera's picture, in its order and shuffled; cold: 256 MiB are written before each pass;"
+                   " Sconce and W' on cube faces of 128 texels, B0+ on octahedral maps of 320",
                    "differs: rays that the same text on the machine's processor answers otherwise"], rows, machine)
 
 

@@ -128,15 +128,15 @@ SCONCE_FN bool projectSegment(SCONCE_INOUT(Segment) g, vec3 f0, vec3 f1)
                    clamp(real(0.5) * size * ((f0.y + g.ta * f1.y) * qa + real(1.0)), kFaceBorder, size - kFaceBorder));
     vec2 Pb = vec2(clamp(real(0.5) * size * ((f0.x + g.tb * f1.x) * qb + real(1.0)), kFaceBorder, size - kFaceBorder),
                    clamp(real(0.5) * size * ((f0.y + g.tb * f1.y) * qb + real(1.0)), kFaceBorder, size - kFaceBorder));
-    g.mirrorX = Pb.x < Pa.x ? -1 : 0;
-    g.mirrorY = Pb.y < Pa.y ? -1 : 0;
+    g.mirrorX = Pb.x < Pa.x;
+    g.mirrorY = Pb.y < Pa.y;
     real mirror = real(mirrorSize());
-    if (g.mirrorX != 0)
+    if (g.mirrorX)
     {
         Pa.x = mirror - Pa.x;
         Pb.x = mirror - Pb.x;
     }
-    if (g.mirrorY != 0)
+    if (g.mirrorY)
     {
         Pa.y = mirror - Pa.y;
         Pb.y = mirror - Pb.y;
@@ -183,8 +183,8 @@ SCONCE_FN vec2 planeLine(SCONCE_IN(Segment) g, uint word, real cx, real cy)
     real qc = halfToReal(word);
     real gx = qc * unpackGradient(word >> 16);
     real gy = qc * unpackGradient(word >> 24);
-    if (g.mirrorX != 0) gx = -gx;
-    if (g.mirrorY != 0) gy = -gy;
+    if (g.mirrorX) gx = -gx;
+    if (g.mirrorY) gy = -gy;
     return vec2(g.q0 - (qc + gx * (g.P.x - cx) + gy * (g.P.y - cy)), g.dq - (gx * g.dP.x + gy * g.dP.y));
 }
 
@@ -194,8 +194,8 @@ SCONCE_FN uint cellIndex(SCONCE_IN(Segment) g, int x, int y, int level)
     int last = (mirrorSize() >> level) - 1;
     int cx = x >> level;
     int cy = y >> level;
-    cx = g.mirrorX != 0 ? last - cx : cx;
-    cy = g.mirrorY != 0 ? last - cy : cy;
+    cx = g.mirrorX ? last - cx : cx;
+    cy = g.mirrorY ? last - cy : cy;
     return uint(cy) * chainWidth(field.faceSize, level) + uint(cx);
 }
 
@@ -228,7 +228,7 @@ SCONCE_FN void rememberSurfel(SCONCE_INOUT(RayState) r, real s)
     real x = real(r.segment.ix);
     real y = real(r.segment.iy);
     vec2 p = vec2(clamp(r.segment.P.x + s * r.segment.dP.x, x, x + real(1.0)), clamp(r.segment.P.y + s * r.segment.dP.y, y, y + real(1.0)));
-    r.surfel.pixel = vec2(r.segment.mirrorX != 0 ? size - p.x : p.x, r.segment.mirrorY != 0 ? size - p.y : p.y);
+    r.surfel.pixel = vec2(r.segment.mirrorX ? size - p.x : p.x, r.segment.mirrorY ? size - p.y : p.y);
     r.surfel.word = r.segment.word;
     r.surfel.probe = r.visit.probe;
     r.surfel.face = r.segment.face;
@@ -279,8 +279,8 @@ SCONCE_FN real timeOfEvent(SCONCE_IN(RayState) r, bool plane)
 
     real half_ = real(0.5) * real(field.faceSize);
     real middle = plane ? real(0.5) : real(0.0);
-    real x = (r.segment.mirrorX != 0 ? real(mirrorSize() - r.segment.ix) - middle : real(r.segment.ix) + middle) - half_;
-    real y = (r.segment.mirrorY != 0 ? real(mirrorSize() - r.segment.iy) - middle : real(r.segment.iy) + middle) - half_;
+    real x = (r.segment.mirrorX ? real(mirrorSize() - r.segment.ix) - middle : real(r.segment.ix) + middle) - half_;
+    real y = (r.segment.mirrorY ? real(mirrorSize() - r.segment.iy) - middle : real(r.segment.iy) + middle) - half_;
     SCONCE_EXACT real fromX = ((half_ * start.x - x * high) - x * low) + half_ * lost.x;
     SCONCE_EXACT real fromY = ((half_ * start.y - y * high) - y * low) + half_ * lost.y;
     real alongX = half_ * step.x - x * step.z;
@@ -405,7 +405,7 @@ SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, int axis, real tolera
     real qc = halfToReal(r.segment.word);
     real gb = unpackGradient(before >> (axis == 1 ? 16 : 24));
     real gc = unpackGradient(r.segment.word >> (axis == 1 ? 16 : 24));
-    if (axis == 1 ? r.segment.mirrorX != 0 : r.segment.mirrorY != 0)
+    if (axis == 1 ? r.segment.mirrorX : r.segment.mirrorY)
     {
         gb = -gb;
         gc = -gc;

@@ -61,43 +61,48 @@ SCONCE_FN uvec4 rankedProbesAt(vec3 p, SCONCE_INOUT(int) reads)
 
 SCONCE_CONST int kMaxTried = 12; // probes remembered as tried without progress: three lists of four
 
-/// The probes a ray has asked at one place, newest first. Vectors: an array indexed by each lane is slow where lanes are vectors.
+/// The probes a ray has asked at one place, newest first, two to a word, the newer in the lower half: a field has at most 65,535, and registers are
+/// what a ray has least of. No array: one indexed by each lane is slow where lanes are vectors.
 struct TriedProbes
 {
-    uvec4 newest;
-    uvec4 middle;
-    uvec4 oldest;
+    uvec3 newer;
+    uvec3 older;
     int count;
 };
 
 SCONCE_FN TriedProbes noneTried()
 {
     TriedProbes tried;
-    tried.newest = uvec4(kNoProbe);
-    tried.middle = uvec4(kNoProbe);
-    tried.oldest = uvec4(kNoProbe);
+    tried.newer = uvec3(kNoProbe);
+    tried.older = uvec3(kNoProbe);
     tried.count = 0;
     return tried;
 }
 
+/// Where a half of a word is 0 the result is not 0, and only there (Mycroft's test for a zero byte, on halves: Warren 2012, Hacker's Delight, section 6-1).
+SCONCE_FN uint zeroHalves(uint word) { return (word - 0x00010001u) & ~word & 0x80008000u; }
+
 SCONCE_FN bool wasTried(SCONCE_IN(TriedProbes) tried, uint probe)
 {
-    uvec4 p = uvec4(probe);
-    return any(equal(tried.newest, p)) || any(equal(tried.middle, p)) || any(equal(tried.oldest, p));
+    uint both = (probe & 0xffffu) * 0x00010001u;
+    uint found = zeroHalves(tried.newer.x ^ both) | zeroHalves(tried.newer.y ^ both) | zeroHalves(tried.newer.z ^ both);
+    found |= zeroHalves(tried.older.x ^ both) | zeroHalves(tried.older.y ^ both) | zeroHalves(tried.older.z ^ both);
+    return found != 0u;
 }
 
 SCONCE_FN void addTried(SCONCE_INOUT(TriedProbes) tried, uint probe)
 {
-    tried.oldest = uvec4(tried.middle.w, tried.oldest.x, tried.oldest.y, tried.oldest.z);
-    tried.middle = uvec4(tried.newest.w, tried.middle.x, tried.middle.y, tried.middle.z);
-    tried.newest = uvec4(probe, tried.newest.x, tried.newest.y, tried.newest.z);
+    tried.older = uvec3((tried.older.x << 16) | (tried.newer.z >> 16), (tried.older.y << 16) | (tried.older.x >> 16),
+                        (tried.older.z << 16) | (tried.older.y >> 16));
+    tried.newer = uvec3((tried.newer.x << 16) | (probe & 0xffffu), (tried.newer.y << 16) | (tried.newer.x >> 16),
+                        (tried.newer.z << 16) | (tried.newer.y >> 16));
     ++tried.count;
 }
 
 /// Forgets all but the last, when the ray has moved on.
 SCONCE_FN void keepLastTried(SCONCE_INOUT(TriedProbes) tried)
 {
-    uint last = tried.newest.x;
+    uint last = tried.newer.x & 0xffffu;
     if (tried.count == 0) return;
     tried = noneTried();
     addTried(tried, last);

@@ -69,8 +69,8 @@ struct Segment
     real dq;
     real tq0;
     real dtq;
-    int mirrorX;    // 0 or -1
-    int mirrorY;
+    bool mirrorX;   // whether P.x was counted from the other side
+    bool mirrorY;
     int ix;         // texel that the march is in
     int iy;
     int ex;         // last texel

@@ -468,6 +468,13 @@ TEST(Command, RenderWritesTheLayersThatWereAskedFor)
     EXPECT_EQ(quiet.err, "");
     EXPECT_EQ(jsonOf(sconceCommand({"compare", folder / "auto.exr", folder / "all.exr", "--metric", "mse", "--json"})).at("mse"), 0.0);
     EXPECT_EQ(jsonOf(render("none.exr", {"--effects", "none", "--json", "--aov", "beauty,depth"})).at("layers"), json({"beauty", "depth"}));
+    // What a layer needs is made where it is asked for; and frames that only warm up change nothing.
+    const json alone = jsonOf(render("alone.exr", {"--json", "--roughness", "0.15", "--aov", "beauty", "--warm-up", "0.05"}));
+    const json counted = jsonOf(render("counted.exr", {"--json", "--roughness", "0.15", "--aov", "beauty,fetches"}));
+    EXPECT_FALSE(alone.contains("fetches_per_ray"));
+    EXPECT_TRUE(counted.contains("fetches_per_ray"));
+    EXPECT_LT(alone.at("device_bytes"), counted.at("device_bytes"));
+    EXPECT_EQ(jsonOf(sconceCommand({"compare", folder / "alone.exr", folder / "counted.exr", "--metric", "mse", "--json"})).at("mse"), 0.0);
 
     EXPECT_EQ(render("x.exr", {"--effects", "sparkle"}).exit, 2);
     EXPECT_EQ(render("x.exr", {"--aov", "sparkle"}).exit, 2);
