@@ -34,6 +34,7 @@ struct BenchOptions
     PlanSettings plan;
     uint32_t groupMebibytes = knobs::groupMebibytes.value; // settings.groupBytes
     std::string check, baseline;                           // files of a guard
+    std::string gpu;                                       // file of bench/gpu/run.sh
 };
 
 /// Probes of the default points, where --probes isn't given: those of the papers' tables for their scenes.
@@ -109,6 +110,12 @@ int runSweep(const BenchRun& run)
     const Stopwatch watch;
     const std::filesystem::path folder(run.options.output);
     Json results = resultsHead(SCONCE_VERSION, run.build, run.context.commandLine, run.device);
+    if (!run.options.gpu.empty())
+    {
+        Result<Json> gpu = readGpuRun(run.options.gpu);
+        if (!gpu) return fail(gpu.error());
+        results["gpu"] = std::move(*gpu);
+    }
     for (const std::string& source : run.options.scenes)
     {
         results["scenes"].push_back(Json::object());
@@ -309,6 +316,11 @@ void addBenchCommand(CLI::App& app, Context& context)
     bench
         ->add_option("--baseline", options->baseline,
                      described("Write such a baseline of the scenes, ours and b0plus, instead of results", words("none")))
+        ->type_name("FILE");
+    bench
+        ->add_option(
+            "--gpu", options->gpu,
+            described("What bench/gpu/run.sh wrote on a machine with a graphics card, for the report to show beside", words("none")))
         ->type_name("FILE");
     addKnob(bench, "--spp", settings.referencePaths, knobs::referencePaths);
     addKnob(bench, "--until", settings.referenceUntil, knobs::referenceUntil, "RELMSE");

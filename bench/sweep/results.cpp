@@ -180,4 +180,75 @@ Result<Json> readResults(const std::filesystem::path& file)
     return parsed;
 }
 
+namespace
+{
+
+bool holdsNumbers(const Json& object)
+{
+    return object.is_object() && std::ranges::all_of(object, [](const Json& value) { return value.is_number(); });
+}
+
+/// A part's frame, or null where it is none.
+Json gpuFrame(const std::string& name, const Json& part)
+{
+    if (!name.starts_with("frame") && !name.starts_with("glossy")) return nullptr;
+    const Json result = part.value("result", Json());
+    if (!result.is_object() || !holdsNumbers(result.value("passes_ms", Json()))) return nullptr;
+    return {{"name", name}, {"clock_mhz", part.value("clock_mhz", Json())}, {"passes_ms", result["passes_ms"]}};
+}
+
+void addGpuRays(Json& rays, const Json& part, bool cold)
+{
+    const auto rate = [](const Json& row, const char* order) { return row.value(order, Json::object()).value("mrays_per_s", Json()); };
+    const Json result = part.value("result", Json());
+    if (!result.is_array()) return;
+    for (const Json& row : result)
+    {
+        if (!holdsTexts(row, {"tracer"}) || !row.value("coherent_ms", Json()).is_object() ||
+            !row.value("incoherent_ms", Json()).is_object())
+            continue;
+        const Json inOrder = rate(row, "coherent_ms"), shuffled = rate(row, "incoherent_ms");
+        if (inOrder.is_number() && shuffled.is_number())
+            rays.push_back({{"tracer", row["tracer"]}, {"cold", cold}, {"in_order", inOrder}, {"shuffled", shuffled}});
+    }
+}
+
+/// The device that a kit's doctor names first, which is what it ran on; null where there is none.
+Json gpuDevice(const Json& parts)
+{
+    const Json doctor = parts.value("doctor", Json());
+    const Json result = doctor.is_object() ? doctor.value("result", Json()) : Json();
+    const Json devices = result.is_object() ? result.value("devices", Json()) : Json();
+    if (!devices.is_array() || devices.empty() || !holdsTexts(devices[0], {"name", "driver"})) return nullptr;
+    return devices[0];
+}
+
+} // namespace
+
+Result<Json> readGpuRun(const std::filesystem::path& file)
+{
+    std::ifstream stream(file);
+    if (!stream)
+        return Error{ErrorCode::fileError, fmt::format("File '{}' can't be read; give what bench/gpu/run.sh wrote.", file.string())};
+    const auto parsed = parsedJson<Json>(stream, file);
+    if (!parsed) return parsed;
+    const Json parts = parsed->is_object() ? parsed->value("parts", Json()) : Json();
+    const Json device = parts.is_object() ? gpuDevice(parts) : Json();
+    if (device.is_null())
+        return Error{ErrorCode::badInput, fmt::format("File '{}' is not what bench/gpu/run.sh writes; run the kit again.", file.string())};
+    Json run = {{"device", device["name"]},
+                {"driver", device["driver"]},
+                {"size", parsed->value("size", Json())},
+                {"wrong", parsed->value("wrong", Json())},
+                {"frames", Json::array()},
+                {"rays", Json::array()}};
+    for (const auto& [name, part] : parts.items())
+    {
+        if (!part.is_object()) continue;
+        if (Json frame = gpuFrame(name, part); !frame.is_null()) run["frames"].push_back(std::move(frame));
+        if (name == "race" || name == "race_cold") addGpuRays(run["rays"], part, name == "race_cold");
+    }
+    return run;
+}
+
 } // namespace sconce

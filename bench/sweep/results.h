@@ -24,6 +24,10 @@ bool holdsTexts(const Json& object, std::initializer_list<const char*> keys);
 /// Reads results.json, or what has its schema. Errors: fileError, badInput (another schema).
 Result<Json> readResults(const std::filesystem::path& file);
 
+/// What the report shows of a file that bench/gpu/run.sh wrote: device, driver, size, wrong, frames and rays (results.ts). Errors:
+/// fileError, badInput (not such a file).
+Result<Json> readGpuRun(const std::filesystem::path& file);
+
 /// The figures that a point is judged by, by name: frame_ms, trace_ms, reads (a ray), wrong_rays (share not right within 1 %),
 /// wrong_rays_02 (0.2 %), unresolved, false, leak, bytes, probes, bake_s, {beauty,diffuse,glossy}.{mse,relmse,flip,mean}. None where it
 /// wasn't measured.

@@ -3,6 +3,7 @@ import { analysisSection } from "./analysis_section";
 import { h, section, segments } from "./dom";
 import { openFoldsOnPaper, reveal } from "./fold";
 import { counted } from "./format";
+import { gpuSection } from "./gpu_section";
 import { imagesSection } from "./images_section";
 import { machineSection } from "./machine_section";
 import { methodStyles } from "./methods";
@@ -39,6 +40,7 @@ function build(page: HTMLElement, results: Results): void {
             ["Images", imagesSection(scene, store)],
             ["Probes", planSection(scene)],
             ["Points", pointsSection(scene, styles, store)],
+            ...(results.gpu ? [["Graphics card", gpuSection(results.gpu, results, scene)] as [string, HTMLElement]] : []),
             ["Machine", machineSection(results, scene)],
         ];
         const unit = h(

@@ -83,6 +83,29 @@ export interface Scene {
     analysis?: { equal?: Equal[]; prices?: Price[]; breaks?: { method: string; id?: string; sentence: string }[] } | null;
 }
 
+export interface GpuFrame {
+    name: string;
+    clock_mhz?: number[] | null; // least, median, most
+    passes_ms: Record<string, number>;
+}
+
+export interface GpuRays {
+    tracer: string;
+    cold: boolean;
+    in_order: number; // million rays a second
+    shuffled: number;
+}
+
+/** What bench/gpu/run.sh measured elsewhere. */
+export interface GpuRun {
+    device?: string;
+    driver?: string;
+    size?: string;
+    wrong?: string[]; // its parts that failed
+    frames?: GpuFrame[];
+    rays?: GpuRays[];
+}
+
 export interface Results {
     schema: number;
     version?: string;
@@ -93,6 +116,7 @@ export interface Results {
     device?: Record<string, unknown>;
     scenes?: Scene[];
     answers?: string[];
+    gpu?: GpuRun;
 }
 
 export const kSchema = 2;

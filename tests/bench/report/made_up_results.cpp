@@ -292,7 +292,23 @@ nlohmann::ordered_json madeUpResults(const std::filesystem::path& folder, const 
             {"machine", {{"cpu", "none: these figures are made up"}, {"cores", 2}, {"memory_mb", 23000}}},
             {"device", {{"name", "made up"}, {"driver", "0.0"}, {"api", "1.3.230"}}},
             {"scenes", scenes},
-            {"answers", {"These figures are made up: they only try the page.", "Losses are shown like wins."}}};
+            {"answers", {"These figures are made up: they only try the page.", "Losses are shown like wins."}},
+            {"gpu",
+             {{"device", "made-up card"},
+              {"driver", "its own 0.1"},
+              {"size", "1920x1080"},
+              {"wrong", {"validation"}},
+              {"frames",
+               {{{"name", "frame_room"},
+                 {"clock_mhz", {345, 1980, 1980}},
+                 {"passes_ms", {{"G-buffer", 3.0}, {"glossy trace", 0.5}, {"compose", 0.25}}}},
+                {{"name", "frame_town"},
+                 {"clock_mhz", nullptr},
+                 {"passes_ms", {{"G-buffer", 2.0}, {"glossy trace", 0.125}, {"surface light", 0.25}}}}}},
+              {"rays",
+               {{{"tracer", "ours"}, {"cold", false}, {"in_order", 600.0}, {"shuffled", 500.0}},
+                {{"tracer", "b0plus-octree"}, {"cold", false}, {"in_order", 300.0}, {"shuffled", 200.0}},
+                {{"tracer", "ours"}, {"cold", true}, {"in_order", 400.0}, {"shuffled", 300.0}}}}}}};
 }
 
 } // namespace sconce::testing_support

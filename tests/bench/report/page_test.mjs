@@ -96,6 +96,26 @@ async function captions() {
     return stills().locator("figcaption").allInnerTexts();
 }
 
+test("what a graphics card took stands beside this run's device, and what was wrong there", async () => {
+    await open("typical");
+    const card = page.locator("#gpu");
+    assert.match(await card.locator(".note").innerText(), /made-up card · its own 0\.1 · 1920x1080/);
+    assert.match(await card.locator(".wrong").innerText(), /validation/);
+    const rows = card.locator(".scroll").first().locator("tbody tr");
+    const cells = (row) => row.locator("th, td").allInnerTexts();
+    const heads = await card.locator(".scroll").first().locator("thead th").allInnerTexts();
+    const room = await cells(rows.first());
+    assert.equal(room[0], "frame room");
+    assert.equal(room[heads.indexOf("indirect light, ms")], "0.500", "without what a renderer has anyway");
+    assert.equal(room[heads.indexOf("surface light")], "–");
+    assert.equal(room.at(-1), "1980 MHz");
+    assert.equal((await cells(rows.nth(1)))[heads.indexOf("indirect light, ms")], "0.375");
+    const rays = card.locator(".scroll").nth(1).locator("tbody tr");
+    assert.deepEqual(await cells(rays.first()), ["ours", "600", "500", "0.500×", "0.400×"]);
+    assert.equal((await cells(rays.nth(2)))[3], "–", "B0+ wasn't timed with cold caches");
+    noFaults();
+});
+
 test("a scene begins with ours, the strongest opponent and the reference, then three sentences; the table is folded", async () => {
     await open("typical");
     const parts = await page.locator("#scene > *").evaluateAll((all) => all.map((one) => one.id));

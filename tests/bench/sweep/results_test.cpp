@@ -137,5 +137,50 @@ TEST(Results, HeadSaysWhatMadeThem)
     EXPECT_EQ(head["scenes"], Json::array());
 }
 
+// What the report shows of a kit's run is what it needs, and no more; parts that failed or are none are left out.
+TEST(GpuRun, IsWhatTheKitMeasured)
+{
+    const TestFolder folder;
+    const std::string text = R"({"kit": "0.1", "size": "64x32", "frames": 5, "wrong": ["validation"], "parts": {
+        "doctor": {"seconds": 1, "clock_mhz": null, "exit": 0, "result": {"devices": [{"name": "card", "driver": "its own 1.2"}]}},
+        "validation": {"exit": 1, "result": null, "said": "a word"},
+        "race": {"result": [{"tracer": "ours", "coherent_ms": {"median": 2, "mrays_per_s": 500}, "incoherent_ms": {"mrays_per_s": 400}},
+                            {"tracer": "halved", "coherent_ms": {"median": 2}, "incoherent_ms": {}}]},
+        "race_cold": {"result": [{"tracer": "ours", "coherent_ms": {"mrays_per_s": 300}, "incoherent_ms": {"mrays_per_s": 200}}]},
+        "frame_room": {"clock_mhz": [345, 1980, 1980], "result": {"passes_ms": {"G-buffer": 2.5, "glossy trace": 0.5}}},
+        "frame_lost": {"result": null}, "glossy_odd": {"result": {"passes_ms": {"glossy trace": "fast"}}}, "bake_room": {"result": {"probes": 3}}}})";
+    writeText(folder / "gpu.json", text);
+    const auto run = readGpuRun(folder / "gpu.json");
+    ASSERT_TRUE(run) << run.error().message;
+    EXPECT_EQ(*run, Json::parse(R"({"device": "card", "driver": "its own 1.2", "size": "64x32", "wrong": ["validation"],
+        "frames": [{"name": "frame_room", "clock_mhz": [345, 1980, 1980], "passes_ms": {"G-buffer": 2.5, "glossy trace": 0.5}}],
+        "rays": [{"tracer": "ours", "cold": false, "in_order": 500, "shuffled": 400}, {"tracer": "ours", "cold": true, "in_order": 300, "shuffled": 200}]})"));
+}
+
+TEST(GpuRun, OtherFilesAreRefused)
+{
+    const TestFolder folder;
+    EXPECT_EQ(readGpuRun(folder / "none.json").error().code, ErrorCode::fileError);
+    for (const char* text :
+         {"", "[]", "{}", R"({"parts": 3})", R"({"parts": {"doctor": 1}})", R"({"parts": {"doctor": {"result": null}}})",
+          R"({"parts": {"doctor": {"result": {"devices": []}}}})", R"({"parts": {"doctor": {"result": {"devices": [{"name": 7}]}}}})"})
+    {
+        writeText(folder / "a.json", text);
+        const auto refused = readGpuRun(folder / "a.json");
+        ASSERT_FALSE(refused) << text;
+        EXPECT_EQ(refused.error().code, ErrorCode::badInput) << text;
+    }
+    for (const char* part : {"3", "null", "[]", R"({"result": 3})",
+                             R"({"result": [3, {"tracer": 1}, {"tracer": "a", "coherent_ms": 1, "incoherent_ms": 2}]})"})
+    {
+        writeText(folder / "a.json",
+                  std::string(R"({"parts": {"doctor": {"result": {"devices": [{"name": "a", "driver": "b"}]}}, "race": )") + part +
+                      R"(, "frame_a": )" + part + "}}");
+        const auto run = readGpuRun(folder / "a.json");
+        ASSERT_TRUE(run) << part;
+        EXPECT_TRUE((*run)["frames"].empty() && (*run)["rays"].empty()) << part;
+    }
+}
+
 } // namespace
 } // namespace sconce
