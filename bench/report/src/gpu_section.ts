@@ -26,7 +26,8 @@ function ownRow(results: Results, scene: Scene): Row[] {
     const own = points(scene).find((point) => point.method === "ours" && point.knob === "default");
     const passes = Object.entries(own?.passes_ms ?? {}).filter((entry): entry is [string, number] => isNumber(entry[1]));
     if (passes.length === 0) return [];
-    return [{ name: `${scene.name}, this run: ${plain(results.device?.name)}`, clock: kNone, passes: Object.fromEntries(passes) }];
+    const size = scene.width && scene.height ? ` at ${scene.width}x${scene.height}` : "";
+    return [{ name: `${scene.name}${size}, this run: ${plain(results.device?.name)}`, clock: kNone, passes: Object.fromEntries(passes) }];
 }
 
 function framesTable(rows: Row[]): HTMLElement {

@@ -110,6 +110,7 @@ test("what a graphics card took stands beside this run's device, and what was wr
     assert.equal(room[heads.indexOf("surface light")], "–");
     assert.equal(room.at(-1), "1980 MHz");
     assert.equal((await cells(rows.nth(1)))[heads.indexOf("indirect light, ms")], "0.375");
+    assert.match((await cells(rows.nth(2)))[0], /this run: made up/);
     const rays = card.locator(".scroll").nth(1).locator("tbody tr");
     assert.deepEqual(await cells(rays.first()), ["ours", "600", "500", "0.500×", "0.400×"]);
     assert.equal((await cells(rays.nth(2)))[3], "–", "B0+ wasn't timed with cold caches");
