@@ -6,6 +6,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 scenes=${SCONCE_SCENES:-../shared/scenes} file=${1:-out/gpu/sconce-gpu-kit.tar}
+for tool in xz:xz-utils strip:binutils; do
+    command -v "${tool%:*}" > /dev/null || { echo "bench/gpu/bundle.sh needs ${tool%:*}; install ${tool#*:}" >&2; exit 2; }
+done
 most=$((60 * 1000 * 1000)) # bytes of the kit
 made=out/gpu/made kit=out/gpu/sconce-gpu-kit
 tools/build.sh release sconce_command sconce_replay sconce_ray_accuracy sconce_pass_statistics >&2

@@ -3,7 +3,8 @@
 # First whether it is right here: no word of the validation layer, answers of the processor's and of the machine that packed the kit, pictures.
 # Then times, at the clock that stands beside them. Exit 1 where something is wrong or missing; the file says what.
 # Environment: VK_DRIVER_FILES where the loader finds no driver; SCONCE_GPU_SECONDS most seconds of one part [150]; SCONCE_GPU_SIZE of frames
-# [1920x1080]; SCONCE_GPU_FRAMES timed [50]; SCONCE_GPU_WARM seconds before times are taken [2].
+# [1920x1080], SCONCE_GPU_LARGE of a larger one [3840x2160]; SCONCE_GPU_FRAMES timed [50]; SCONCE_GPU_WARM seconds before times are taken [2];
+# SCONCE_GPU_PARTS a regular expression of the parts to measure [all].
 set -uo pipefail
 file=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/gpu.json}")
 cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
@@ -11,7 +12,7 @@ if [[ ! -d bin ]]; then # as it was unpacked: the rest is in an archive of its o
     LD_LIBRARY_PATH=$PWD ./xz -dc kit.tar.xz | tar xf - -C .. || exit 1
     exec ./run.sh "$file"
 fi
-most=${SCONCE_GPU_SECONDS:-150} size=${SCONCE_GPU_SIZE:-1920x1080} frames=${SCONCE_GPU_FRAMES:-50} warm=${SCONCE_GPU_WARM:-2}
+most=${SCONCE_GPU_SECONDS:-150} size=${SCONCE_GPU_SIZE:-1920x1080} large=${SCONCE_GPU_LARGE:-3840x2160} frames=${SCONCE_GPU_FRAMES:-50} warm=${SCONCE_GPU_WARM:-2}
 export LD_LIBRARY_PATH=$PWD/lib VK_LAYER_PATH=$PWD/lib VK_ADD_LAYER_PATH=$PWD/lib
 work=$(mktemp -d) judged=$(< expected/judged) wrong=()
 ./sample_clock.sh > "$work/clocks" 2> /dev/null &
@@ -25,6 +26,7 @@ text() { tr -d '\000-\010\013\014\016-\037' < "$1" | sed -e 's/\\/\\\\/g' -e 's/
 part() {
     local name=$1 begin=$EPOCHREALTIME status=0
     shift
+    [[ $name =~ ${SCONCE_GPU_PARTS:-} ]] || return
     echo "$name" >&2
     timeout "$most" bash -c '"$@"' part "$@" > "$work/out" 2> "$work/err" || status=$?
     local end=$EPOCHREALTIME
@@ -95,7 +97,7 @@ frames "frame_$judged" "$judged" "fields/$judged.sconce"
 frames "frame_all_$judged" "$judged" "fields/$judged.sconce" --effects all
 frames "glossy_$judged" "$judged" "fields/$judged.sconce" "${glossy[@]}"
 frames "glossy_b0plus_$judged" "$judged" "$octahedral" "${glossy[@]}" --tracer b0plus-octree
-may_lack=1 size=3840x2160 frames "frame_4k_$judged" "$judged" "fields/$judged.sconce"
+may_lack=1 size=$large frames "frame_4k_$judged" "$judged" "fields/$judged.sconce"
 [[ $judged == cornell-glossy ]] || frames frame_cornell-glossy cornell-glossy fields/cornell-glossy.sconce
 for scene in town modern_hall; do
     [[ -f fields/$scene.probes.json ]] || continue
