@@ -3,6 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
+#include "look_up_rows.glsl"
 
 // Lists the tiles in which some pixel has a term, for each term, and keeps each pixel's terms for the filters,
 // which ask them of every neighbour; and lists what passes look up. The order of a list varies from run to run; no pixel depends on it.
@@ -44,9 +45,6 @@ shared uint found[kMostLookUpLists * 64u];
 
 uint termsOfList(uint list) { return list == 0u ? kTermsOfFirst : list == 1u ? kTermsOfSecond : list == 2u ? kTermsOfThird : kTermsOfFourth; }
 uint kindOfList(uint list) { return list == 0u ? kKindOfFirst : list == 1u ? kKindOfSecond : list == 2u ? kKindOfThird : kKindOfFourth; }
-
-/// Rows of workgroups that so many look-ups take.
-uint rowsOfLookUps(uint count) { return (count + 64u * kTileRow - 1u) / (64u * kTileRow); }
 
 uint quadPixel(uint first, uint i) { return first + (i & 1u) + (i >> 1) * kTileSide; }
 

@@ -1,5 +1,6 @@
 // The look-ups of a pass, each for one pixel or for 2x2 that show one flat surface: classify_tiles.comp lists them, so that no invocation idles beside an
 // edge. After tiles.glsl. Dispatch: the list's TileRuns.
+#include "look_up_rows.glsl"
 layout(constant_id = kLookUpListId) const uint kLookUpList = 0u;
 
 struct LookUp
@@ -53,8 +54,8 @@ void leave(LookUp l, bool alone)
 {
     uint count = alone ? uint(l.pixels) : 1u;
     uint index = atomicAdd(lookUpRuns[kRest].count, count);
-    uint rows = (index + count + 64u * kTileRow - 1u) / (64u * kTileRow);
-    if (rows > (index + 64u * kTileRow - 1u) / (64u * kTileRow)) atomicMax(lookUpRuns[kRest].y, rows); // as classify_tiles.comp does
+    uint rows = rowsOfLookUps(index + count);
+    if (rows > rowsOfLookUps(index)) atomicMax(lookUpRuns[kRest].y, rows);
     for (uint i = 0u; i < count; ++i)
     {
         uvec2 at = uvec2(pixelOf(l, int(i)));
