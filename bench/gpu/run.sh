@@ -6,6 +6,7 @@
 # [1920x1080], SCONCE_GPU_LARGE of a larger one [3840x2160]; SCONCE_GPU_FRAMES timed [50]; SCONCE_GPU_WARM seconds before times are taken [2];
 # SCONCE_GPU_PARTS a regular expression of the parts to measure [all].
 set -uo pipefail
+export LC_ALL=C # figures with a point
 file=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/gpu.json}")
 cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
 if [[ ! -d bin ]]; then # as it was unpacked: the rest is in an archive of its own
