@@ -45,12 +45,11 @@ if [[ -f $scenes/sponza/Sponza.gltf ]]; then
 fi
 cp "$made/$judged.probes.json" "$kit/fields/"
 # Rays of one camera's picture, which is what a frame traces, and what tracers make of them here: a GPU has to agree.
-"$accuracy" "$judged_scene" --camera 0 --rays 100000 --record "$kit/rays/$judged.rays" --field ours="$made/$judged.sconce" --json > "$kit/expected/rays.json"
+"$accuracy" "$judged_scene" --camera 0 --rays 100000 --record "$kit/rays/$judged.rays" --field ours="$made/$judged.sconce" --json > "$kit/expected/$judged.json"
 [[ $judged == cornell-glossy ]] || "$accuracy" cornell-glossy --camera 0 --rays 20000 --record "$kit/rays/cornell-glossy.rays" --field ours="$made/cornell-glossy.sconce" --json > "$kit/expected/cornell-glossy.json"
 for effects in auto all; do
     "$sconce" render cornell-glossy --field "$made/cornell-glossy.sconce" --size 320x320 --effects $effects -o "$kit/expected/$effects.exr" --aov beauty --quiet > /dev/null
 done
-"$sconce" doctor --json > "$kit/expected/doctor.json"
 echo "$judged" > "$kit/expected/judged"
 cp bench/gpu/run.sh bench/gpu/sample_clock.sh "$kit/"
 

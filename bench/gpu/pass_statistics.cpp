@@ -2,17 +2,17 @@
 //   sconce_pass_statistics FILE.spv[:ID=VALUE,...]... [--constant ID=VALUE]... [--device NAME]
 // The .spv files are those that the build makes. RADV says it without hardware: RADV_FORCE_FAMILY=NAVI21, and its ICD in VK_DRIVER_FILES.
 #include <charconv>
-#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/gpu/spirv_interface.h"
+#include "bench/race/tracer_race.h"
 #include "runtime/vulkan/made_device.h"
 #include "runtime/vulkan/pipeline.h"
 
@@ -150,18 +150,16 @@ Result<Json> compile(const TellingDevice& device, Gpu& gpu, const Pass& pass)
     const auto interface = spirvInterface(*code);
     if (!interface) return Error{interface.error().code, fmt::format("{}: {}", pass.file, interface.error().message)};
     // A layout for each set up to the last, empty ones too.
-    std::vector<DescriptorSet> sets;
+    std::vector<VkDescriptorSetLayout> layouts;
     for (uint32_t set = 0; !interface->bindings.empty() && set <= interface->bindings.back().set; ++set)
     {
-        std::vector<DescriptorSet::Binding> bindings;
+        std::vector<VkDescriptorSetLayoutBinding> bindings;
         for (const SpirvInterface::Binding& one : interface->bindings)
-            if (one.set == set) bindings.push_back({one.binding, one.type});
-        auto made = DescriptorSet::create(gpu, bindings);
-        if (!made) return made.error();
-        sets.push_back(std::move(*made));
+            if (one.set == set) bindings.push_back({one.binding, one.type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        const auto layout = gpu.setLayout(bindings);
+        if (!layout) return layout.error();
+        layouts.push_back(*layout);
     }
-    std::vector<VkDescriptorSetLayout> layouts;
-    for (const DescriptorSet& set : sets) layouts.push_back(set.layout());
     constexpr uint32_t kMostPushBytes = 128; // that every device has
     const auto pipeline = Pipeline::compute(gpu, *code, layouts, interface->pushes ? kMostPushBytes : 0, pass.constants,
                                             VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR);
@@ -215,11 +213,7 @@ int main(int argc, char** argv)
     app.add_option("--device", options.device, "Vulkan device, by number or part of its name (default: the best)");
     CLI11_PARSE(app, argc, argv);
     const auto all = sconce::compileAll(options);
-    if (!all)
-    {
-        std::fprintf(stderr, "%s\n", all.error().message.c_str());
-        return all.error().code == sconce::ErrorCode::badArgument ? 2 : all.error().code == sconce::ErrorCode::badInput ? 3 : 4;
-    }
+    if (!all) return sconce::exitCodeOf(all.error());
     std::cout << all->dump(1) << std::endl;
     return 0;
 }

@@ -61,22 +61,26 @@ like_expected() {
     bin/sconce render cornell-glossy --field fields/cornell-glossy.sconce --size 320x320 --effects "$1" -o "$work/$1.exr" --aov beauty --quiet > /dev/null || return
     bin/sconce compare "$work/$1.exr" "expected/$1.exr" --metric relmse --fail-above relmse=1e-4 --json
 }
-# Answers on the GPU and on the processor; more than one ray in a thousand that differs is a fault.
-like_processor() {
-    bin/sconce_replay "$1" --field ours="$2" --cpu --json > "$work/replay" || return
+# The shares of answers that are right, wrong and unresolved.
+shares() { awk -F'[:,]' '/"(right_1|right_02|false|leak|unresolved)"/ {print $2}' "$1"; }
+# Answers on the GPU, on the processor and where the kit was packed: more than one ray in a thousand that differs is a fault.
+like_expected_rays() {
+    bin/sconce_replay "rays/$1.rays" --field ours="fields/$1.sconce" --cpu --json > "$work/replay" || return
     cat "$work/replay"
+    paste <(shares "$work/replay") <(shares "expected/$1.json") | awk '{apart = $1 - $2; if (apart * apart > 1e-6) wrong = 1} END {exit wrong || NR != 5}' ||
+        { echo "shares of answers are not those of the machine that packed the kit, within a thousandth" >&2; return 1; }
     awk -F'[:,]' '/"rays"/ {rays = $2} /"cpu_differs"/ {differs = $2} END {exit !(differs * 1000 <= rays)}' "$work/replay" ||
         { echo "more than a thousandth of the rays has other answers than the processor gives" >&2; return 1; }
 }
 
 export work
-export -f validated like_expected like_processor
+export -f validated like_expected shares like_expected_rays
 
 part doctor bin/sconce doctor --json
 part validation validated bin/sconce render cornell-glossy --field fields/cornell-glossy.sconce --size 320x320 --effects all -o "$work/v.exr" --json --quiet
 for rays in rays/*.rays; do
     name=$(basename "${rays%.rays}")
-    part "rays_$name" like_processor "$rays" "fields/$name.sconce"
+    part "rays_$name" like_expected_rays "$name"
 done
 part picture_auto like_expected auto
 part picture_all like_expected all

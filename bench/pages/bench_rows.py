@@ -37,6 +37,7 @@ TARGETS = [
 NAMED = {"cornell_glossy.glb": "cornell_mcguire glossy", "zdm2.glb": "map_zdm2"}  # files whose names say too little
 SHORT = {"ours-grid": "own", "b0plus-octree": "lists", "wang": "W'", "ddgi-placed": "DDGI, own probes"}  # in targets
 PATHS = ("path tracer", "path tracer filtered")
+HOST = ("G-buffer", "direct light", "compose")  # passes that a renderer has anyway
 
 
 def slug(text):
@@ -332,7 +333,6 @@ def bounces(arguments):
 def effects(arguments):
     """What each scene's effects cost, auto against all, of the files that effects_table.sh leaves in a folder; and each pass."""
     folder, names, turns = Path(arguments[0]), arguments[2:], int(arguments[1])
-    host = ("G-buffer", "direct light", "compose")  # what a renderer has anyway
     rows, passes = {}, {}
     for name in names:
         plans = {}
@@ -340,7 +340,7 @@ def effects(arguments):
             runs = [json.loads((folder / f"{name}.{plan}.{turn}.json").read_text()) for turn in range(turns)]
             plans[plan] = runs[0] | {"passes_ms": {one: min(run["passes_ms"][one] for run in runs) for one in runs[0]["passes_ms"]}}
             passes[f"{slug(name)}__{plan}"] = {"label": name, "plan": plan} | {slug(one): f"{ms:.0f}" for one, ms in plans[plan]["passes_ms"].items()}
-        light = {plan: sum(ms for one, ms in run["passes_ms"].items() if one not in host) for plan, run in plans.items()}
+        light = {plan: sum(ms for one, ms in run["passes_ms"].items() if one not in HOST) for plan, run in plans.items()}
         auto, size = plans["auto"], lambda end: f"{(folder / f'{name}{end}').stat().st_size / 1e6:.1f}"
         rows[slug(name)] = {"label": name, "calls_for": " ".join(one for one in ("diffuse", "rough", "glossy", "mirror", "emitters", "sky") if auto["effects"][one]),
                             "traced_pixels": f"{100 * auto.get('traced_pixels', 0):.1f} %", "auto_ms": f"{light['auto']:.0f}", "all_ms": f"{light['all']:.0f}",
@@ -368,10 +368,9 @@ def gpu(arguments):
         notes.append(f"clock while times were taken: {min(medians)} to {max(medians)} MHz, medians of its parts")
     frames = {name: part["result"]["passes_ms"] for name, part in parts.items() if name.startswith(("frame", "glossy")) and part["result"]}
     passes = list(dict.fromkeys(one for times in frames.values() for one in times))
-    host = ("G-buffer", "direct light", "compose")  # what a renderer has anyway
     rows = {slug(one): {"label": one} | {slug(name): f"{times[one]:.3f}" for name, times in frames.items() if one in times} for one in passes}
     rows["indirect"] = {"label": "indirect light: all but G-buffer, direct light, compose"} | {
-        slug(name): f"{sum(ms for one, ms in times.items() if one not in host):.2f}" for name, times in frames.items()}
+        slug(name): f"{sum(ms for one, ms in times.items() if one not in HOST):.2f}" for name, times in frames.items()}
     write("gpu_frames.json", "Milliseconds of each pass on a GPU", ["bench/gpu/bundle.sh", "bench/gpu/run.sh", "bench_rows.py gpu"], notes, rows, machine)
     labels = {"ours": "Sconce", "b0plus-octree": "B0+, same probes and lists", "wang": "W', same probes and lists"}
     rows = {}

@@ -59,12 +59,9 @@ Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Sp
     std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                                                     {gpu::kMovingBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (const Bound& bound : images) bindings.push_back({bound.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
-    if (!set.handle()) // else another pass has made it
-    {
-        auto made = makeFrameSet(*gpu, frame, bindings);
-        if (!made) return made.error();
-        set = std::move(*made);
-    }
+    auto made = makeFrameSet(*gpu, frame, bindings);
+    if (!made) return made.error();
+    set = std::move(*made);
     for (const Bound& bound : images) set.write(bound.binding, bound.image->view(), VK_IMAGE_LAYOUT_GENERAL);
     set.write(gpu::kTileBinding, tileList->buffer());
     set.write(gpu::kMovingBinding, moving ? moving : tileList->buffer()); // of few passes; what isn't read is bound all the same
