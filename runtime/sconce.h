@@ -70,7 +70,12 @@ class LightField
 public:
     /// Reads and uploads a .sconce file. Errors: fileError, badInput (names the damaged block, or the version), badArgument (knobs out of
     /// range: named), outOfMemory (names the bytes), deviceFailure.
-    static Result<LightField> load(const Device& device, const std::filesystem::path& file, const Quality& quality = {});
+    /// @param resident  0: all of it is on the device. Else so many probes' maps, which are nearly all of it, at a time: FieldStream reads
+    /// those that
+    ///                  frames ask for; without them light comes from what is known in the open. badArgument where light is in groups or
+    ///                  moves
+    static Result<LightField> load(const Device& device, const std::filesystem::path& file, const Quality& quality = {},
+                                   uint32_t resident = knobs::resident.value);
 
     VkDescriptorSetLayout layout() const;  // for a host's own pipeline layouts, at set SCONCE_FIELD_SET
     VkDescriptorSet descriptorSet() const; // the field's resources
@@ -99,6 +104,52 @@ public:
 
 private:
     std::shared_ptr<State> shared;
+};
+
+/// Worlds larger than memory: keeps those maps of a light field on the device that frames ask for, of a field that was loaded with room for
+/// some. Passes note which probes they would read; a thread reads these from the file, those nearest to the eye first, and record() copies
+/// what it has read to where the maps are that were not asked for the longest. Where a probe's maps are missing, the next of a place's
+/// ranked probes answers, then light that is known in the open: a picture is less sharp for some frames, and never waits. Move-only; it
+/// keeps its light field.
+class FieldStream
+{
+public:
+    struct Desc
+    {
+        uint32_t probesAFrame = 2;   // copied by one record at most; 1 to 64
+        uint32_t framesInFlight = 3; // the GPU is done with a record after so many further ones; 1 to 8
+    };
+    struct Counts
+    {
+        uint32_t resident = 0; // probes whose maps are there
+        uint32_t missing = 0;  // that were asked for lately and aren't
+        uint64_t read = 0;     // probes read from the file so far
+        bool full = false;     // all that are there were asked for lately: there is no room for what is missing
+    };
+
+    /// Errors: badArgument (a number out of range; a field that is whole, or has a stream), outOfMemory.
+    static Result<FieldStream> create(const Device& device, const LightField& field, const Desc& desc);
+    FieldStream(FieldStream&&) noexcept;
+    FieldStream& operator=(FieldStream&&) noexcept;
+    ~FieldStream(); // waits for the thread
+
+    /// Records copies of what has been read, before the frames that show it; nothing where nothing has. Begins by waiting for whoever reads
+    /// the maps, ends with the barrier that lets any later stage read them. Never waits for the file, allocates, throws or submits.
+    /// @param eye  world, metres
+    /// @param timer  optional; scope "stream maps"
+    void record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer = nullptr) noexcept;
+    Counts counts() const;
+    /// Of the file: the first that failed, and which probe; its maps stay away, and frames go on without them. fileError, badInput (names
+    /// the damaged block), outOfMemory.
+    Status status() const;
+    uint64_t deviceBytes() const; // besides the field's
+
+    struct State; // of the library's own folders
+    explicit FieldStream(std::unique_ptr<State> made);
+    State& state() const { return *owned; }
+
+private:
+    std::unique_ptr<State> owned;
 };
 
 /// The groups of lights that a field was baked with, as a host switches, dims and colours them: in the frame in which that is recorded, and

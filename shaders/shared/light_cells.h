@@ -54,7 +54,7 @@ SCONCE_FN vec4 cellLightAt(vec3 lifted, vec3 normal, uvec4 ranked)
 {
     uint eye = ranked.x;
     for (int k = kRanked - 1; k >= 0; --k)
-        if (!hiddenFromProbe(ranked[k], lifted - vec3(probeHeader(ranked[k]).centre))) eye = ranked[k];
+        if (holdsMaps(ranked[k]) && !hiddenFromProbe(ranked[k], lifted - vec3(probeHeader(ranked[k]).centre))) eye = ranked[k];
     vec3 centre = vec3(probeHeader(eye).centre);
     ivec3 count = lightCells();
     vec3 at = (lifted - vec3(field.boundsLow)) / (real(field.voxel) * real(1 << field.cellShift)) - vec3(real(0.5));

@@ -3,7 +3,7 @@
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {
-    uint map = onOctahedron() ? probe : probe * 6u + uint(face);
+    uint map = onOctahedron() ? mapSlot(probe) : mapSlot(probe) * 6u + uint(face);
     return (map * field.faceSize + uint(y)) * field.faceSize + uint(x);
 }
 
@@ -89,6 +89,7 @@ SCONCE_FN vec3 planeOfDistance(uint probe, vec3 direction)
 /// before it, and more behind it. 0 for sky, and where nothing is known.
 SCONCE_FN vec3 planeSeen(uint probe, vec3 direction)
 {
+    if (!holdsMaps(probe)) return vec3(real(0.0));
     if (onOctahedron()) return dot(direction, direction) > real(1e-12) ? planeOfDistance(probe, direction) : vec3(real(0.0));
     int face = dominantFace(direction);
     vec3 uvw = faceCoordinates(face, direction);
@@ -97,7 +98,7 @@ SCONCE_FN vec3 planeSeen(uint probe, vec3 direction)
     real last = real(field.faceSize) - real(1.0);
     real x = clamp(floor(middle * (uvw.x / uvw.z + real(1.0))), real(0.0), last);
     real y = clamp(floor(middle * (uvw.y / uvw.z + real(1.0))), real(0.0), last);
-    uint word = distanceWord(probe * field.wordsPerProbe + uint(face) * (field.wordsPerProbe / 6u) + uint(y) * field.faceSize + uint(x));
+    uint word = distanceWord(mapWords(probe, face) + uint(y) * field.faceSize + uint(x));
     real gx = unpackGradient(word >> 16);
     real gy = unpackGradient(word >> 24);
     real inMiddle = real(1.0) + gx * (middle - x - real(0.5)) + gy * (middle - y - real(0.5)); // of the face, over q of the texel's centre

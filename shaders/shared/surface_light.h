@@ -300,6 +300,8 @@ SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCO
         real most = density[which];
         uint probe = ranked[which];
         density[which] = real(0.0);
+        askForMaps(probe);
+        if (!holdsMaps(probe)) continue;
         vec3 fromProbe = point - vec3(probeHeader(probe).centre);
         if (!isSeenBy(probe, fromProbe, facing)) continue;
         SurfaceTaps taps = surfaceTaps(probe, fromProbe, facing);
