@@ -502,6 +502,17 @@ inline constexpr Knob<uint32_t> traceEvery{
     .buys = "rays on one pixel of so many, the others from those that show the same surface: on 1 of 4 the trace takes 0.4 to 0.6 times as "
             "long for 0 to 4 % more FLIP; sharp reflections and mirrors are traced everywhere",
     .readme = true};
+inline constexpr Knob<uint32_t> surfaceProbes{
+    .name = "surfaceProbes",
+    .option = "render --surface-probes",
+    .member = "IndirectLight::Desc::surfaceProbes",
+    .value = 2,
+    .least = 1,
+    .most = 2,
+    .unit = "probes",
+    .what = "Probes whose surface light is blended at a look-up",
+    .buys = "diffuse light without seams where the probe that sees most changes; of one, surface light takes less time",
+    .readme = true};
 inline constexpr Knob<uint32_t> resident{.name = "resident",
                                          .option = "render --resident",
                                          .member = "LightField::load",

@@ -124,7 +124,7 @@ public:
         uint32_t resident = 0; // probes whose maps are there
         uint32_t missing = 0;  // that were asked for lately and aren't
         uint64_t read = 0;     // probes read from the file so far
-        bool full = false;     // all that are there were asked for lately: there is no room for what is missing
+        bool full = false;     // there is no room for what is missing: all that are there were asked for lately, and are nearer to the eye
     };
 
     /// Errors: badArgument (a number out of range; a field that is whole, or has a stream), outOfMemory.
@@ -272,8 +272,9 @@ public:
         IndirectEffects effects;                       // LightField::effectsOfFrames() has those that the scene calls for
         uint32_t traceEvery = knobs::traceEvery.value; // trace one pixel of so many, of reflections and of traced diffuse light, and make
                                                        // the rest from it: shaders/reconstruct.comp. Mirrors are traced at every pixel
-        bool counts = false;                           // write what each pixel's ray cost: an image of 16 bytes a pixel
-        uint32_t movingShapes = 0;                     // that move at a time, up to 256; 0: no pass, nor bytes, of them
+        uint32_t surfaceProbes = knobs::surfaceProbes.value; // whose light is blended at a look-up of surface light
+        bool counts = false;                                 // write what each pixel's ray cost: an image of 16 bytes a pixel
+        uint32_t movingShapes = 0;                           // that move at a time, up to 256; 0: no pass, nor bytes, of them
     };
     /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL, to be sampled or read as a storage image; all null when the effect is off.
     struct Output

@@ -46,6 +46,10 @@ ProbeHeader probeHeader(uint probe)
     vec4 a = texelFetch(sconceProbes, 3 * int(probe)), b = texelFetch(sconceProbes, 3 * int(probe) + 1), c = texelFetch(sconceProbes, 3 * int(probe) + 2);
     return ProbeHeader(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
 }
+// Probes that light a point, of a pass that says so before it includes this.
+#ifndef SCONCE_SURFACE_PROBES
+#define SCONCE_SURFACE_PROBES kSurfaceProbes
+#endif
 // Of a field that streams not all maps are on the device. A pass that defines SCONCE_ASKS_FOR_MAPS before it includes this tells FieldStream which it would
 // read: by atomic writes, which fragment shaders may only do where the device can (fragmentStoresAndAtomics).
 uint slotOf(uint probe) { return streams() ? texelFetch(sconceSlots, int(probe)).x : probe; }
@@ -108,6 +112,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/light_cells.h"
 #include "shared/refined.h"
 #include "shared/hidden_light.h"
+#define surfaceProbes() SCONCE_SURFACE_PROBES
 #include "shared/surface_light.h"
 #include "shared/live_text.h"
 #include "shared/ray_query.h"

@@ -453,6 +453,7 @@ int runRender(RenderOptions options, const Context& context)
     json["device_bytes"] = drawn->deviceBytes;
     json["samples"] = settings.glossyRays;
     json["trace_every"] = settings.traceEvery;
+    json["surface_probes"] = settings.surfaceProbes;
     json["rays_below"] = settings.raysBelow;
     json["diffuse"] = diffuse;
     json["area_shadows"] = options.areaShadows;
@@ -544,8 +545,8 @@ void addRenderCommand(CLI::App& app, Context& context)
     options->pictures.add(command, frameLayers());
     options->quality.add(command);
     // What only geometry's pixels have.
-    for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--no-denoise",
-                              "--temporal", "--roughness", "--sun-path", "--shapes", "--resident"})
+    for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every",
+                              "--surface-probes", "--no-denoise", "--temporal", "--roughness", "--sun-path", "--shapes", "--resident"})
         fromField->excludes(command->get_option(other));
     onChosen(command, context, options, runRender);
 }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -137,22 +138,26 @@ void FieldStream::State::noteAsked()
             if (const size_t probe = 32 * i + size_t(std::countr_zero(bits)); probe < lastAsked.size()) lastAsked[probe] = records;
 }
 
-/// A slot that is empty, or, but those that this record has filled, whose probe wasn't asked for the longest, the farthest of those;
-/// kNoProbe: all were asked for lately, or, where the new one wasn't, all are as near.
+/// A slot that is empty, or, but those that this record has filled, whose probe wasn't asked for the longest; where all were asked for
+/// lately, the farthest from the eye of those that are farther than the new one: so that what stays doesn't depend on the way that the
+/// camera came.
+/// @return  kNoProbe: the new one has to wait
 uint32_t FieldStream::State::slotFor(uint32_t probe, vec3 eye) const
 {
     uint32_t found = gpu::kNoProbe;
-    std::pair<uint64_t, float> worst{UINT64_MAX, 0.0f}; // asked first, then farthest
+    std::tuple<bool, uint64_t, float> worst; // asked for lately, when, how near
     for (uint32_t slot = 0; slot < probeOfSlot.size(); ++slot)
     {
         const uint32_t there = probeOfSlot[slot];
         if (there == gpu::kNoProbe) return slot;
-        if (askedLately(*this, there) || filledAt[slot] == records) continue;
-        const std::pair<uint64_t, float> rank{lastAsked[there], -distanceTo(*this, there, eye)};
-        if (rank < worst) worst = rank, found = slot;
+        if (filledAt[slot] == records) continue;
+        const bool lately = askedLately(*this, there);
+        const std::tuple rank{lately, lately ? 0 : lastAsked[there], -distanceTo(*this, there, eye)};
+        if (found == gpu::kNoProbe || rank < worst) worst = rank, found = slot;
     }
-    const bool better = found != gpu::kNoProbe && (askedLately(*this, probe) || distanceTo(*this, probe, eye) < -worst.second);
-    return better ? found : gpu::kNoProbe;
+    const bool lately = askedLately(*this, probe), nearer = found != gpu::kNoProbe && distanceTo(*this, probe, eye) < -std::get<2>(worst);
+    if (found == gpu::kNoProbe || (std::get<0>(worst) ? !(lately && nearer) : !(lately || nearer))) return gpu::kNoProbe;
+    return found;
 }
 
 FieldStream::FieldStream(std::unique_ptr<State> made) : owned(std::move(made)) {}
@@ -250,26 +255,20 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     state.order.clear();
     Counts& counts = state.counts;
     counts = {};
-    uint32_t pinned = 0;
     for (uint32_t probe = 0; probe < state.slotOfProbe.size(); ++probe)
     {
-        const bool lately = askedLately(state, probe);
-        if (state.slotOfProbe[probe] != gpu::kNoProbe)
-        {
-            ++counts.resident;
-            pinned += lately ? 1 : 0;
-            continue;
-        }
-        if (state.reader->failed(probe)) continue;
+        const bool there = state.slotOfProbe[probe] != gpu::kNoProbe, lately = askedLately(state, probe);
+        counts.resident += there ? 1 : 0;
+        if (there || state.reader->failed(probe)) continue;
         counts.missing += lately ? 1 : 0;
         state.order.emplace_back(distanceTo(state, probe, eye) + (lately ? 0.0f : kFarAway), probe);
     }
-    counts.full = pinned == state.probeOfSlot.size();
     const size_t most = std::min(MapReader::kMostWanted, state.order.size());
     std::ranges::partial_sort(state.order, state.order.begin() + std::ptrdiff_t(most));
     state.names.clear();
     for (size_t i = 0; i < most; ++i)
         if (state.slotFor(state.order[i].second, eye) != gpu::kNoProbe) state.names.push_back(state.order[i].second);
+    counts.full = counts.missing > 0 && (state.names.empty() || !askedLately(state, state.names.front()));
     state.reader->want(state.names);
     counts.read = state.reader->read();
 }

@@ -88,6 +88,10 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
         return probe;
     }
     void askForMaps(uint) const {}
+    int surfaceProbes() const
+    {
+        return kSurfaceProbes;
+    }
     const ProbeHeader& probeHeader(uint probe) const
     {
         if constexpr (kCounts) ++read.headers;
