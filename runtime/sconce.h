@@ -107,10 +107,10 @@ private:
 };
 
 /// Worlds larger than memory: keeps those maps of a light field on the device that frames ask for, of a field that was loaded with room for
-/// some. Passes note which probes they would read; a thread reads these from the file, those nearest to the eye first, and record() copies
-/// what it has read to where the maps are that were not asked for the longest. Where a probe's maps are missing, the next of a place's
-/// ranked probes answers, then light that is known in the open: a picture is less sharp for some frames, and never waits. Move-only; it
-/// keeps its light field.
+/// some. Passes note which probes they would read; a thread reads these from the file, those asked for most first, and record() copies
+/// what it has read to where the maps are that are asked for least, or not at all and are the farthest from the eye. Where a probe's maps
+/// are missing, the next of a place's ranked probes answers, then light that is known in the open: a picture is less sharp for some frames,
+/// and never waits. Move-only; it keeps its light field.
 class FieldStream
 {
 public:
@@ -122,9 +122,9 @@ public:
     struct Counts
     {
         uint32_t resident = 0; // probes whose maps are there
-        uint32_t missing = 0;  // that were asked for lately and aren't
+        uint32_t missing = 0;  // that are asked for and aren't
         uint64_t read = 0;     // probes read from the file so far
-        bool full = false;     // there is no room for what is missing: all that are there were asked for lately, and are nearer to the eye
+        bool full = false;     // there is no room for what is missing: all that are there are asked for as often, or nearly
     };
 
     /// Errors: badArgument (a number out of range; a field that is whole, or has a stream), outOfMemory.

@@ -50,8 +50,8 @@ ProbeHeader probeHeader(uint probe)
 #ifndef SCONCE_SURFACE_PROBES
 #define SCONCE_SURFACE_PROBES kSurfaceProbes
 #endif
-// Of a field that streams not all maps are on the device. A pass that defines SCONCE_ASKS_FOR_MAPS before it includes this tells FieldStream which it would
-// read: by atomic writes, which fragment shaders may only do where the device can (fragmentStoresAndAtomics).
+// Of a field that streams not all maps are on the device. A compute pass that defines SCONCE_ASKS_FOR_MAPS before it includes this tells FieldStream which it
+// would read, and how often: one of eight invocations does.
 uint slotOf(uint probe) { return streams() ? texelFetch(sconceSlots, int(probe)).x : probe; }
 bool holdsMaps(uint probe) { return slotOf(probe) != kNoProbe; }
 uint mapSlot(uint probe) // in the field even of maps that aren't there, which nobody should read
@@ -64,9 +64,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SconceAsked 
 void askForMaps(uint probe)
 {
     if (!streams()) return;
-    SconceAsked asked = SconceAsked(askedAddress);
-    uint bit = 1u << (probe & 31u);
-    if ((asked.word[probe / 32u] & bit) == 0u) atomicOr(asked.word[probe / 32u], bit);
+    if ((gl_LocalInvocationIndex & 7u) == 0u) atomicAdd(SconceAsked(askedAddress).word[probe], 1u);
 }
 #else
 void askForMaps(uint probe) {}

@@ -464,7 +464,7 @@ def fly(arguments):
     root = lambda key: f"{100 * flight['error'][key] ** 0.5:.1f}"
     row = {"label": f"{name}, {flight['resident']} of {flight['probes']} probes, {flight['speed']:.0f} m/s", "median_error": root("median"), "p90_error": root("p90"),
            "worst_error": root("worst"), "least_light": f"{flight['light']['least']:.3f}", "most_light": f"{flight['light']['most']:.3f}",
-           "most_missing": str(flight["most_missing"]), "read": str(flight["read"]), "mib": f"{flight['device_bytes'] / 2**20:.1f}",
+           "cut_frames": str(flight["cut"]["frames"]), "cut_light": f"{flight['cut']['first_light']:.2f}", "most_missing": f"{flight['most_missing']:.0f}", "read": str(flight["read"]), "mib": f"{flight['device_bytes'] / 2**20:.1f}",
            "whole_mib": f"{flight['whole_device_bytes'] / 2**20:.1f}", "p999_over_median": f"{flight['frame_ms']['p999'] / flight['frame_ms']['median']:.2f}",
            "copy_most_ms": f"{flight['copy_ms']['most']:.1f}"}
     print(f'  "{slug(name)}_{flight["resident"]}_{flight["speed"]:.0f}": {json.dumps(row)},', flush=True)
@@ -475,7 +475,7 @@ def flights(arguments):
     write("streaming.json", "A camera that flies from probe to probe through a field whose maps come from its file, against the whole field", ["bench/pages/stream_table.sh"],
           ["error: root of the mean squared difference of indirect light, % of its mean; light: ratio of the means, of the worst frames",
            "320x180, 200 frames at 60 a second, at most 2 probes copied in one; mib: of the field on the device, with what is on its way; read: probes from the file",
-           "missing: of the probes that pixels and rays asked for"], rows)
+           "missing: of the probes that pixels and rays asked for; cut: frames until the error is below a tenth where the flight begins without a map on the device, and the first one's light"], rows)
 
 
 def least_and_most(texts):

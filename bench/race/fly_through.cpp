@@ -1,7 +1,8 @@
 // What a light field whose maps come from its file is off by while a camera flies, against the same with all maps on the device.
 //   sconce_fly_through SCENE --field FILE [--resident N] [--a-frame N] [--speed M/S] [--frames N] [--width N] [--height N]
-// The camera goes from probe to probe, the nearest that it hasn't been at next, 60 frames a second. Prints, as JSON, the error of indirect
-// light frame by frame: of the squared mean of the whole field's the mean squared difference, and the ratio of the means.
+// The camera is put to the first probe, without a map on the device, and stays until its picture is nearly that of the whole field; then it
+// goes from probe to probe, the nearest that it hasn't been at next, 60 frames a second. Prints, as JSON, the error of indirect light frame
+// by frame: of the squared mean of the whole field's the mean squared difference, and the ratio of the means.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -24,6 +25,8 @@ namespace
 {
 
 constexpr float kFramesASecond = 60.0f;
+constexpr double kSharp = 0.01;       // error from which on a picture counts as that of the whole field: a tenth, root mean square
+constexpr size_t kMostAfterCut = 240; // frames
 
 struct Options
 {
@@ -58,6 +61,79 @@ double quantile(std::vector<double> values, double share)
     return values[size_t(share * double(values.size() - 1))];
 }
 
+struct Flown
+{
+    Difference difference;
+    double frameMs, copyMs; // the frame with what was copied before it, and that alone
+    FieldStream::Counts counts;
+};
+
+/// Draws each frame twice: through the streamed field, and through the whole one.
+class Flyer
+{
+public:
+    Flyer(Gpu& device, FieldStream& streamed, SceneRenderer& through, SceneRenderer& truth, GpuTimer& copies)
+        : gpu(device), stream(streamed), drawn(through), truths(truth), timer(copies)
+    {
+    }
+
+    Result<Flown> frame(const Camera& camera)
+    {
+        auto status = gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                timer.reset(cmd);
+                stream.record(cmd, camera.eye, &timer);
+            });
+        if (!status) return status.error();
+        double copied = 0.0;
+        for (const GpuTimer::Scope& scope : timer.read()) copied += scope.milliseconds;
+        const auto frame = drawn.render(camera), truth = truths.render(camera);
+        if (!frame) return frame.error();
+        if (!truth) return truth.error();
+        if (status = stream.status(); !status) return status.error();
+        double sum = copied;
+        for (const GpuTimer::Scope& scope : frame->times) sum += scope.milliseconds;
+        return Flown{between(*frame, *truth), sum, copied, stream.counts()};
+    }
+
+private:
+    Gpu& gpu;
+    FieldStream& stream;
+    SceneRenderer &drawn, &truths;
+    GpuTimer& timer;
+};
+
+nlohmann::ordered_json toJson(const Options& options, const std::vector<Flown>& cut, const std::vector<Flown>& flight)
+{
+    const auto all = [&](auto of)
+    {
+        std::vector<double> values;
+        for (const Flown& one : flight) values.push_back(double(of(one)));
+        return values;
+    };
+    const std::vector<double> errors = all([](const Flown&f) { return f.difference.error; }),
+                              light = all([](const Flown&f) { return f.difference.ratio; }),
+                              milliseconds = all([](const Flown&f) { return f.frameMs; }),
+                              copies = all([](const Flown&f) { return f.copyMs; }),
+                              resident = all([](const Flown&f) { return f.counts.resident; }),
+                              missing = all([](const Flown&f) { return f.counts.missing; });
+    nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+    for (const Flown& f : flight) frames.push_back({f.difference.error, f.difference.ratio, f.counts.missing, f.copyMs});
+    return {{"resident", options.resident},
+            {"speed", options.speed},
+            {"probes_a_frame", options.stream.probesAFrame},
+            {"cut", {{"frames", cut.size()}, {"first_light", cut.front().difference.ratio}, {"first_error", cut.front().difference.error}}},
+            {"error", {{"median", quantile(errors, 0.5)}, {"p90", quantile(errors, 0.9)}, {"worst", quantile(errors, 1.0)}}},
+            {"light", {{"least", quantile(light, 0.0)}, {"median", quantile(light, 0.5)}, {"most", quantile(light, 1.0)}}},
+            {"frame_ms", {{"median", quantile(milliseconds, 0.5)}, {"p999", quantile(milliseconds, 0.999)}}},
+            {"copy_ms", {{"median", quantile(copies, 0.5)}, {"most", quantile(copies, 1.0)}}},
+            {"most_resident", quantile(resident, 1.0)},
+            {"most_missing", quantile(missing, 1.0)},
+            {"read", flight.back().counts.read},
+            {"frames", std::move(frames)}};
+}
+
 Status run(const Options& options)
 {
     Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
@@ -86,52 +162,28 @@ Status run(const Options& options)
                drawn = SceneRenderer::create(**gpu, *device, *field, settings);
     if (!truths) return truths.error();
     if (!drawn) return drawn.error();
-
-    const Flight flight(*all);
     auto timer = GpuTimer::create(**gpu, 1);
     if (!timer) return timer.error();
-    std::vector<double> errors, ratios, milliseconds, copies;
-    nlohmann::ordered_json frames = nlohmann::ordered_json::array();
-    uint32_t missing = 0, resident = 0;
+
+    const Flight flight(*all);
+    Flyer flyer(**gpu, *stream, **drawn, **truths, *timer);
+    std::vector<Flown> cut, flown;
+    while (cut.size() < kMostAfterCut && (cut.empty() || cut.back().difference.error > kSharp))
+    {
+        auto frame = flyer.frame(flight.at(0.0f));
+        if (!frame) return frame.error();
+        cut.push_back(std::move(*frame));
+    }
     for (uint32_t i = 0; i < options.frames; ++i)
     {
-        const Camera camera = flight.at(options.speed / kFramesASecond * float(i));
-        double copied = 0.0;
-        auto status = (*gpu)->submit(
-            [&](VkCommandBuffer cmd)
-            {
-                timer->reset(cmd);
-                stream->record(cmd, camera.eye, &*timer);
-            });
-        if (!status) return status;
-        for (const GpuTimer::Scope& scope : timer->read()) copied += scope.milliseconds;
-        const auto frame = (*drawn)->render(camera), truth = (*truths)->render(camera);
+        auto frame = flyer.frame(flight.at(options.speed / kFramesASecond * float(i)));
         if (!frame) return frame.error();
-        if (!truth) return truth.error();
-        double sum = copied;
-        for (const GpuTimer::Scope& scope : frame->times) sum += scope.milliseconds;
-        const Difference difference = between(*frame, *truth);
-        errors.push_back(difference.error), ratios.push_back(difference.ratio), milliseconds.push_back(sum), copies.push_back(copied);
-        const FieldStream::Counts counts = stream->counts();
-        missing = std::max(missing, counts.missing), resident = std::max(resident, counts.resident);
-        frames.push_back({difference.error, difference.ratio, counts.missing, copied});
+        flown.push_back(std::move(*frame));
     }
-    if (auto status = stream->status(); !status) return status;
-    const nlohmann::ordered_json json = {
-        {"probes", all->info.probeCount},
-        {"resident", options.resident},
-        {"speed", options.speed},
-        {"probes_a_frame", options.stream.probesAFrame},
-        {"error", {{"median", quantile(errors, 0.5)}, {"p90", quantile(errors, 0.9)}, {"worst", quantile(errors, 1.0)}}},
-        {"light", {{"least", quantile(ratios, 0.0)}, {"median", quantile(ratios, 0.5)}, {"most", quantile(ratios, 1.0)}}},
-        {"frame_ms", {{"median", quantile(milliseconds, 0.5)}, {"p999", quantile(milliseconds, 0.999)}}},
-        {"copy_ms", {{"median", quantile(copies, 0.5)}, {"most", quantile(copies, 1.0)}}},
-        {"most_resident", resident},
-        {"most_missing", missing},
-        {"read", stream->counts().read},
-        {"device_bytes", field->deviceBytes() + stream->deviceBytes()},
-        {"whole_device_bytes", whole->deviceBytes()},
-        {"frames", std::move(frames)}};
+    nlohmann::ordered_json json = toJson(options, cut, flown);
+    json["probes"] = all->info.probeCount;
+    json["device_bytes"] = field->deviceBytes() + stream->deviceBytes();
+    json["whole_device_bytes"] = whole->deviceBytes();
     std::cout << json.dump(1) << "\n";
     return success();
 }

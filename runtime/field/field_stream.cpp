@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cstring>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -13,20 +11,10 @@ namespace sconce
 namespace
 {
 
-/// Records for which a probe counts as asked for: passes note it while they run, which the host sees some records later.
-constexpr uint64_t kLately = 16;
-constexpr float kFarAway = 1e20f; // metres: behind all that was asked for
-
-bool askedLately(const FieldStream::State& state, uint32_t probe)
-{
-    return state.lastAsked[probe] != 0 && state.lastAsked[probe] + kLately > state.records;
-}
-
-float distanceTo(const FieldStream::State& state, uint32_t probe, vec3 eye)
-{
-    const LightField::State& field = state.field.state();
-    return glm::distance(field.info.origin + field.info.scale * field.headers[probe].centre, eye);
-}
+constexpr float kKept =
+    0.875f; // of what was asked for before, a record later: passes note it while they run, which is seen some records later
+constexpr float kLeastAsked = 0.5f; // below it a probe isn't asked for any longer
+constexpr float kMoreAsked = 1.25f; // times what another is, that a probe must be asked for to take its place: or two would take turns
 
 } // namespace
 
@@ -128,36 +116,41 @@ void MapReader::run(std::stop_token stop)
     }
 }
 
-/// Takes what passes have noted since the last record. They may be running: what they set meanwhile is taken by the next one, or they set
-/// it again.
+/// Takes what passes have noted since the last record. They may be running: what they note meanwhile is taken by the next one.
 void FieldStream::State::noteAsked()
 {
-    const std::span words(reinterpret_cast<uint32_t*>(field.state().maps->asked.mapped()), (lastAsked.size() + 31) / 32);
-    for (size_t i = 0; i < words.size(); ++i)
-        for (uint32_t bits = std::atomic_ref(words[i]).exchange(0u, std::memory_order_relaxed); bits != 0; bits &= bits - 1)
-            if (const size_t probe = 32 * i + size_t(std::countr_zero(bits)); probe < lastAsked.size()) lastAsked[probe] = records;
+    const std::span counts(reinterpret_cast<uint32_t*>(field.state().maps->asked.mapped()), asked.size());
+    for (size_t probe = 0; probe < asked.size(); ++probe)
+    {
+        const auto now = float(std::atomic_ref(counts[probe]).exchange(0u, std::memory_order_relaxed));
+        asked[probe] = std::max(now, kKept * asked[probe]);
+        if (asked[probe] < kLeastAsked) asked[probe] = 0.0f;
+    }
 }
 
-/// A slot that is empty, or, but those that this record has filled, whose probe wasn't asked for the longest; where all were asked for
-/// lately, the farthest from the eye of those that are farther than the new one: so that what stays doesn't depend on the way that the
-/// camera came.
+FieldStream::State::Worth FieldStream::State::worthOf(uint32_t probe, vec3 eye) const
+{
+    const LightField::State& of = field.state();
+    return {-asked[probe], glm::distance(of.info.origin + of.info.scale * of.headers[probe].centre, eye)};
+}
+
+/// A slot that is empty, or that of the least worthy probe, where the new one is worthier; not one that this record has filled.
 /// @return  kNoProbe: the new one has to wait
 uint32_t FieldStream::State::slotFor(uint32_t probe, vec3 eye) const
 {
     uint32_t found = gpu::kNoProbe;
-    std::tuple<bool, uint64_t, float> worst; // asked for lately, when, how near
+    Worth least;
     for (uint32_t slot = 0; slot < probeOfSlot.size(); ++slot)
     {
-        const uint32_t there = probeOfSlot[slot];
-        if (there == gpu::kNoProbe) return slot;
+        if (probeOfSlot[slot] == gpu::kNoProbe) return slot;
         if (filledAt[slot] == records) continue;
-        const bool lately = askedLately(*this, there);
-        const std::tuple rank{lately, lately ? 0 : lastAsked[there], -distanceTo(*this, there, eye)};
-        if (found == gpu::kNoProbe || rank < worst) worst = rank, found = slot;
+        const Worth worth = worthOf(probeOfSlot[slot], eye);
+        if (found == gpu::kNoProbe || worth > least) least = worth, found = slot;
     }
-    const bool lately = askedLately(*this, probe), nearer = found != gpu::kNoProbe && distanceTo(*this, probe, eye) < -std::get<2>(worst);
-    if (found == gpu::kNoProbe || (std::get<0>(worst) ? !(lately && nearer) : !(lately || nearer))) return gpu::kNoProbe;
-    return found;
+    if (found == gpu::kNoProbe) return found;
+    const Worth own = worthOf(probe, eye);
+    const bool worthier = least.first < 0.0f ? own.first < kMoreAsked * least.first : own < least;
+    return worthier ? found : gpu::kNoProbe;
 }
 
 FieldStream::FieldStream(std::unique_ptr<State> made) : owned(std::move(made)) {}
@@ -188,7 +181,7 @@ Result<FieldStream> makeFieldStream(Gpu& gpu, const LightField& field, const Fie
     const size_t probes = field.state().headers.size();
     state->probeOfSlot.assign(pool->slots, gpu::kNoProbe);
     state->slotOfProbe.assign(probes, gpu::kNoProbe);
-    state->lastAsked.assign(probes, 0);
+    state->asked.assign(probes, 0.0f);
     state->order.reserve(probes);
     state->names.reserve(probes);
     state->reader = std::make_unique<MapReader>(pool->file, 2 * desc.probesAFrame);
@@ -251,24 +244,24 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
         if (timer) timer->end(cmd);
     }
 
-    // What to read next: what was asked for, then what is near, as far as there is room.
+    // What to read next: the worthiest, as far as there is room.
     state.order.clear();
     Counts& counts = state.counts;
     counts = {};
     for (uint32_t probe = 0; probe < state.slotOfProbe.size(); ++probe)
     {
-        const bool there = state.slotOfProbe[probe] != gpu::kNoProbe, lately = askedLately(state, probe);
+        const bool there = state.slotOfProbe[probe] != gpu::kNoProbe;
         counts.resident += there ? 1 : 0;
         if (there || state.reader->failed(probe)) continue;
-        counts.missing += lately ? 1 : 0;
-        state.order.emplace_back(distanceTo(state, probe, eye) + (lately ? 0.0f : kFarAway), probe);
+        counts.missing += state.asked[probe] > 0.0f ? 1 : 0;
+        state.order.emplace_back(state.worthOf(probe, eye), probe);
     }
     const size_t most = std::min(MapReader::kMostWanted, state.order.size());
     std::ranges::partial_sort(state.order, state.order.begin() + std::ptrdiff_t(most));
     state.names.clear();
     for (size_t i = 0; i < most; ++i)
         if (state.slotFor(state.order[i].second, eye) != gpu::kNoProbe) state.names.push_back(state.order[i].second);
-    counts.full = counts.missing > 0 && (state.names.empty() || !askedLately(state, state.names.front()));
+    counts.full = counts.missing > 0 && (state.names.empty() || state.asked[state.names.front()] == 0.0f);
     state.reader->want(state.names);
     counts.read = state.reader->read();
 }

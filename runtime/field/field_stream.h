@@ -59,6 +59,10 @@ private:
 /// What stands behind the handle FieldStream.
 struct FieldStream::State
 {
+    /// What a probe's maps are worth: first by how often they are asked for, then, of those that aren't, by how near they are. Less is
+    /// worthier.
+    using Worth = std::pair<float, float>;
+
     std::shared_ptr<Gpu> gpu;
     LightField field;
     Desc desc;
@@ -67,13 +71,14 @@ struct FieldStream::State
     std::unique_ptr<MapReader> reader;
     std::vector<uint32_t> probeOfSlot, slotOfProbe;
     std::vector<uint64_t> filledAt;                // of each slot, by record
-    std::vector<uint64_t> lastAsked;               // of each probe, by record; 0: never
-    std::vector<std::pair<float, uint32_t>> order; // of a record: missing probes by their distance to the eye
+    std::vector<float> asked;                      // of each probe: how often it was asked for in a frame, less the longer ago
+    std::vector<std::pair<Worth, uint32_t>> order; // of a record: missing probes, the worthiest first
     std::vector<uint32_t> names;                   // the same, for the reader
     uint64_t records = 0;
     Counts counts;
 
     void noteAsked();
+    Worth worthOf(uint32_t probe, vec3 eye) const;
     uint32_t slotFor(uint32_t probe, vec3 eye) const;
 };
 

@@ -79,7 +79,7 @@ Result<std::unique_ptr<MapPool>> makePool(Gpu& gpu, MapFile file, uint32_t slots
     auto where = gpu.makeTexelBuffer<uint32_t>(nowhere, VK_FORMAT_R32_UINT, "slots of maps");
     if (!where) return where.error();
     pool->slotOfProbe = std::move(*where);
-    auto asked = gpu.makeBuffer((probes + 31) / 32 * sizeof(uint32_t), 0, MemoryUse::readback, "maps asked for");
+    auto asked = gpu.makeBuffer(probes * sizeof(uint32_t), 0, MemoryUse::readback, "maps asked for");
     if (!asked) return asked.error();
     pool->asked = std::move(*asked);
     std::memset(pool->asked.mapped(), 0, pool->asked.size());

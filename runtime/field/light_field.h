@@ -16,7 +16,7 @@ struct MapPool
     MapFile file;
     uint32_t slots = 0; // probes whose maps there is room for
     Buffer slotOfProbe; // kNoProbe: not there
-    Buffer asked;       // a bit for each probe, set by passes, read and cleared by the host
+    Buffer asked;       // a count for each probe, of passes, taken and cleared by the host
     bool fed = false;   // a FieldStream has it
 };
 

@@ -37,7 +37,7 @@ const uint kByTexels = 4u; // words are texels of buffers; else they are read by
     DeviceAddress lampAddress; \
     DeviceAddress liveAddress;   /* incident live light of the texels */ \
     DeviceAddress albedoAddress; /* LiveTransport::albedo */ \
-    DeviceAddress askedAddress;  /* bit of each probe whose maps were asked for, where kStreams */ \
+    DeviceAddress askedAddress;  /* how often each probe's maps were asked for, where kStreams */ \
     vec3 radianceWeight;         /* of the baked radiance, where there is live light */ \
     uint lampCount;
 #ifdef __cplusplus
