@@ -460,9 +460,9 @@ def movings(arguments):
 
 def fly(arguments):
     """A flight's row: what a streamed field's frames are off by."""
-    flight, name = json.loads(Path(arguments[0]).read_text()), arguments[1]
+    flight, settled, name = json.loads(Path(arguments[0]).read_text()), json.loads(Path(arguments[1]).read_text()), arguments[2]
     root = lambda key: f"{100 * flight['error'][key] ** 0.5:.1f}"
-    row = {"label": f"{name}, {flight['resident']} of {flight['probes']} probes, {flight['speed']:.0f} m/s", "median_error": root("median"), "p90_error": root("p90"),
+    row = {"label": f"{name}, {flight['resident']} of {flight['probes']} probes, {flight['speed']:.0f} m/s", "settled_flip": f"{settled['flip']:.3f}", "settled_mean": f"{settled['mean']:.3f}", "median_error": root("median"), "p90_error": root("p90"),
            "worst_error": root("worst"), "least_light": f"{flight['light']['least']:.3f}", "most_light": f"{flight['light']['most']:.3f}",
            "cut_frames": str(flight["cut"]["frames"]), "cut_light": f"{flight['cut']['first_light']:.2f}", "most_missing": f"{flight['most_missing']:.0f}", "read": str(flight["read"]), "mib": f"{flight['device_bytes'] / 2**20:.1f}",
            "whole_mib": f"{flight['whole_device_bytes'] / 2**20:.1f}", "p999_over_median": f"{flight['frame_ms']['p999'] / flight['frame_ms']['median']:.2f}",
@@ -474,7 +474,7 @@ def flights(arguments):
     rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
     write("streaming.json", "A camera that flies from probe to probe through a field whose maps come from its file, against the whole field", ["bench/pages/stream_table.sh"],
           ["error: root of the mean squared difference of indirect light, % of its mean; light: ratio of the means, of the worst frames",
-           "320x180, 200 frames at 60 a second, at most 2 probes copied in one; mib: of the field on the device, with what is on its way; read: probes from the file",
+           "settled: of the scene's first view once what it asks for has come, FLIP and mean over those of the whole field; 320x180, 200 frames at 60 a second, at most 2 probes copied in one; mib: of the field on the device, with what is on its way; read: probes from the file",
            "missing: of the probes that pixels and rays asked for; cut: frames until the error is below a tenth where the flight begins without a map on the device, and the first one's light"], rows)
 
 
