@@ -14,6 +14,8 @@ namespace
 constexpr float kKept =
     0.875f; // of what was asked for before, a record later: passes note it while they run, which is seen some records later
 constexpr float kLeastAsked = 0.5f; // below it a probe isn't asked for any longer
+constexpr float kNearby = 1e12f;    // as often as nothing is asked for
+constexpr float kRecordsAhead = 8.0f;
 constexpr float kMoreAsked = 1.25f; // times what another is, that a probe must be asked for to take its place: or two would take turns
 
 } // namespace
@@ -128,10 +130,32 @@ void FieldStream::State::noteAsked()
     }
 }
 
-FieldStream::State::Worth FieldStream::State::worthOf(uint32_t probe, vec3 eye) const
+/// Where the eye comes to, its picture asks for maps when it is too late: those nearest to it, and to where it goes on to, come first.
+void FieldStream::State::follow(vec3 eye)
+{
+    const vec3 ahead = records > 1 ? eye + kRecordsAhead * (eye - eyeBefore) : eye;
+    eyeBefore = eye;
+    const auto nearestTo = [&](vec3 place)
+    {
+        uint32_t nearest = 0;
+        for (uint32_t probe = 1; probe < asked.size(); ++probe)
+            if (distanceTo(probe, place) < distanceTo(nearest, place)) nearest = probe;
+        return nearest;
+    };
+    nearby = {nearestTo(eye), nearestTo(ahead)};
+}
+
+/// Metres.
+float FieldStream::State::distanceTo(uint32_t probe, vec3 place) const
 {
     const LightField::State& of = field.state();
-    return {-asked[probe], glm::distance(of.info.origin + of.info.scale * of.headers[probe].centre, eye)};
+    return glm::distance(of.info.origin + of.info.scale * of.headers[probe].centre, place);
+}
+
+FieldStream::State::Worth FieldStream::State::worthOf(uint32_t probe, vec3 eye) const
+{
+    const bool isNearby = probe == nearby[0] || probe == nearby[1];
+    return {isNearby ? -kNearby : -asked[probe], distanceTo(probe, eye)};
 }
 
 /// A slot that is empty, or that of the least worthy probe, where the new one is worthier; not one that this record has filled.
@@ -199,6 +223,7 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     MapPool& pool = *field.maps;
     ++state.records;
     state.noteAsked();
+    state.follow(eye);
 
     const size_t distanceBytes = 4 * pool.file.distanceWords(), radianceBytes = 4 * pool.file.radianceWords();
     const size_t first = (state.records % state.desc.framesInFlight) * state.desc.probesAFrame;

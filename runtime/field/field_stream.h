@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -74,10 +75,14 @@ struct FieldStream::State
     std::vector<float> asked;                      // of each probe: how often it was asked for in a frame, less the longer ago
     std::vector<std::pair<Worth, uint32_t>> order; // of a record: missing probes, the worthiest first
     std::vector<uint32_t> names;                   // the same, for the reader
+    vec3 eyeBefore{0.0f};                          // of the last record
+    std::array<uint32_t, 2> nearby{};              // probes nearest to the eye, and to where it will be: worthier than all
     uint64_t records = 0;
     Counts counts;
 
     void noteAsked();
+    void follow(vec3 eye);
+    float distanceTo(uint32_t probe, vec3 place) const;
     Worth worthOf(uint32_t probe, vec3 eye) const;
     uint32_t slotFor(uint32_t probe, vec3 eye) const;
 };
