@@ -115,6 +115,8 @@ std::span<const KnobRow> knobRows()
                                               rowOf(diffuse),
                                               rowOf(areaShadows),
                                               rowOf(traceEvery),
+                                              rowOf(surfaceProbes),
+                                              rowOf(resident),
                                               rowOf(raysBelow),
                                               rowOf(areaSamples),
                                               rowOf(denoise),

@@ -502,6 +502,30 @@ inline constexpr Knob<uint32_t> traceEvery{
     .buys = "rays on one pixel of so many, the others from those that show the same surface: on 1 of 4 the trace takes 0.4 to 0.6 times as "
             "long for 0 to 4 % more FLIP; sharp reflections and mirrors are traced everywhere",
     .readme = true};
+inline constexpr Knob<uint32_t> surfaceProbes{
+    .name = "surfaceProbes",
+    .option = "render --surface-probes",
+    .member = "IndirectLight::Desc::surfaceProbes",
+    .value = 2,
+    .least = 1,
+    .most = 2,
+    .unit = "probes",
+    .what = "Probes whose surface light is blended at a look-up",
+    .buys = "diffuse light without seams where the probe that sees most changes; of one, surface light takes less time",
+    .readme = true};
+inline constexpr Knob<uint32_t> resident{.name = "resident",
+                                         .option = "render --resident",
+                                         .member = "LightField::load",
+                                         .value = 0,
+                                         .least = 1,
+                                         .most = 65535,
+                                         .unit = "probes",
+                                         .inWords = "all",
+                                         .what = "Probes whose maps are on the device at a time, those that the picture asks for",
+                                         .buys =
+                                             "worlds larger than memory (FieldStream): nearly all of a light field are its maps; what no "
+                                             "probe that is there sees gets light of the open",
+                                         .readme = true};
 inline constexpr Knob<float> raysBelow{.name = "raysBelow",
                                        .option = "render --rays-below",
                                        .member = "RenderSettings::raysBelow",

@@ -41,8 +41,14 @@ Result<GpuTimer> GpuTimer::create(const Device& device, uint32_t maxScopes)
     return create(device.gpu(), maxScopes);
 }
 
-Result<LightField> LightField::load(const Device& device, const std::filesystem::path& file, const Quality& quality)
+Result<LightField> LightField::load(const Device& device, const std::filesystem::path& file, const Quality& quality, uint32_t resident)
 {
+    if (resident > 0)
+    {
+        auto streamed = openField(file);
+        if (!streamed) return streamed.error();
+        return makeStreamedField(device.gpu(), streamed->field, std::move(streamed->maps), resident, quality);
+    }
     const auto data = loadField(file);
     if (!data) return data.error();
     return makeLightField(device.gpu(), *data, quality);

@@ -70,7 +70,12 @@ class LightField
 public:
     /// Reads and uploads a .sconce file. Errors: fileError, badInput (names the damaged block, or the version), badArgument (knobs out of
     /// range: named), outOfMemory (names the bytes), deviceFailure.
-    static Result<LightField> load(const Device& device, const std::filesystem::path& file, const Quality& quality = {});
+    /// @param resident  0: all of it is on the device. Else so many probes' maps, which are nearly all of it, at a time: FieldStream reads
+    /// those that
+    ///                  frames ask for; without them light comes from what is known in the open. badArgument where light is in groups or
+    ///                  moves
+    static Result<LightField> load(const Device& device, const std::filesystem::path& file, const Quality& quality = {},
+                                   uint32_t resident = knobs::resident.value);
 
     VkDescriptorSetLayout layout() const;  // for a host's own pipeline layouts, at set SCONCE_FIELD_SET
     VkDescriptorSet descriptorSet() const; // the field's resources
@@ -99,6 +104,52 @@ public:
 
 private:
     std::shared_ptr<State> shared;
+};
+
+/// Worlds larger than memory: keeps those maps of a light field on the device that frames ask for, of a field that was loaded with room for
+/// some. Passes note which probes they would read; a thread reads these from the file, those asked for most first, and record() copies
+/// what it has read to where the maps are that are asked for least, or not at all and are the farthest from the eye. Where a probe's maps
+/// are missing, the next of a place's ranked probes answers, then light that is known in the open: a picture is less sharp for some frames,
+/// and never waits. Move-only; it keeps its light field.
+class FieldStream
+{
+public:
+    struct Desc
+    {
+        uint32_t probesAFrame = 2;   // copied by one record at most; 1 to 64
+        uint32_t framesInFlight = 3; // the GPU is done with a record after so many further ones; 1 to 8
+    };
+    struct Counts
+    {
+        uint32_t resident = 0; // probes whose maps are there
+        uint32_t missing = 0;  // that are asked for and aren't
+        uint64_t read = 0;     // probes read from the file so far
+        bool full = false;     // there is no room for what is missing: all that are there are asked for as often, or nearly
+    };
+
+    /// Errors: badArgument (a number out of range; a field that is whole, or has a stream), outOfMemory.
+    static Result<FieldStream> create(const Device& device, const LightField& field, const Desc& desc);
+    FieldStream(FieldStream&&) noexcept;
+    FieldStream& operator=(FieldStream&&) noexcept;
+    ~FieldStream(); // waits for the thread
+
+    /// Records copies of what has been read, before the frames that show it; nothing where nothing has. Begins by waiting for whoever reads
+    /// the maps, ends with the barrier that lets any later stage read them. Never waits for the file, allocates, throws or submits.
+    /// @param eye  world, metres
+    /// @param timer  optional; scope "stream maps"
+    void record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer = nullptr) noexcept;
+    Counts counts() const;
+    /// Of the file: the first that failed, and which probe; its maps stay away, and frames go on without them. fileError, badInput (names
+    /// the damaged block), outOfMemory.
+    Status status() const;
+    uint64_t deviceBytes() const; // besides the field's
+
+    struct State; // of the library's own folders
+    explicit FieldStream(std::unique_ptr<State> made);
+    State& state() const { return *owned; }
+
+private:
+    std::unique_ptr<State> owned;
 };
 
 /// The groups of lights that a field was baked with, as a host switches, dims and colours them: in the frame in which that is recorded, and
@@ -221,8 +272,9 @@ public:
         IndirectEffects effects;                       // LightField::effectsOfFrames() has those that the scene calls for
         uint32_t traceEvery = knobs::traceEvery.value; // trace one pixel of so many, of reflections and of traced diffuse light, and make
                                                        // the rest from it: shaders/reconstruct.comp. Mirrors are traced at every pixel
-        bool counts = false;                           // write what each pixel's ray cost: an image of 16 bytes a pixel
-        uint32_t movingShapes = 0;                     // that move at a time, up to 256; 0: no pass, nor bytes, of them
+        uint32_t surfaceProbes = knobs::surfaceProbes.value; // whose light is blended at a look-up of surface light
+        bool counts = false;                                 // write what each pixel's ray cost: an image of 16 bytes a pixel
+        uint32_t movingShapes = 0;                           // that move at a time, up to 256; 0: no pass, nor bytes, of them
     };
     /// An image of the frame's size in VK_IMAGE_LAYOUT_GENERAL, to be sampled or read as a storage image; all null when the effect is off.
     struct Output

@@ -26,6 +26,8 @@ layout(set = SCONCE_FIELD_SET, binding = kFieldIrradianceBinding) uniform utextu
 layout(set = SCONCE_FIELD_SET, binding = kFieldPrefilteredBinding) uniform utextureBuffer sconcePrefiltered;
 layout(set = SCONCE_FIELD_SET, binding = kFieldSurfaceBinding) uniform utextureBuffer sconceSurfaceLight;
 
+layout(set = SCONCE_FIELD_SET, binding = kFieldSlotsBinding) uniform utextureBuffer sconceSlots;
+
 // Of a pass; LightField::constants() holds them.
 layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
 bool readsFarBounds() { return (kFieldFlags & kReadsFarBounds) != 0u; }
@@ -33,6 +35,7 @@ bool byTexels() { return (kFieldFlags & kByTexels) != 0u; }
 bool holdsRefined() { return (kFieldFlags & kHoldsRefined) != 0u; }
 bool holdsPrefiltered() { return (kFieldFlags & kHoldsPrefiltered) != 0u; }
 bool holdsLive() { return (kFieldFlags & kHoldsLive) != 0u; }
+bool streams() { return (kFieldFlags & kStreams) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form, or none.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
@@ -43,6 +46,29 @@ ProbeHeader probeHeader(uint probe)
     vec4 a = texelFetch(sconceProbes, 3 * int(probe)), b = texelFetch(sconceProbes, 3 * int(probe) + 1), c = texelFetch(sconceProbes, 3 * int(probe) + 2);
     return ProbeHeader(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
 }
+// Probes that light a point, of a pass that says so before it includes this.
+#ifndef SCONCE_SURFACE_PROBES
+#define SCONCE_SURFACE_PROBES kSurfaceProbes
+#endif
+// Of a field that streams not all maps are on the device. A compute pass that defines SCONCE_ASKS_FOR_MAPS before it includes this tells FieldStream which it
+// would read, and how often: one of eight invocations does.
+uint slotOf(uint probe) { return streams() ? texelFetch(sconceSlots, int(probe)).x : probe; }
+bool holdsMaps(uint probe) { return slotOf(probe) != kNoProbe; }
+uint mapSlot(uint probe) // in the field even of maps that aren't there, which nobody should read
+{
+    uint slot = slotOf(probe);
+    return slot == kNoProbe ? 0u : slot;
+}
+#ifdef SCONCE_ASKS_FOR_MAPS
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SconceAsked { uint word[]; };
+void askForMaps(uint probe)
+{
+    if (!streams()) return;
+    if ((gl_LocalInvocationIndex & 7u) == 0u) atomicAdd(SconceAsked(askedAddress).word[probe], 1u);
+}
+#else
+void askForMaps(uint probe) {}
+#endif
 uint distanceWord(uint index)
 {
     if (byTexels()) return texelFetch(sconceDistance, int(index)).x;
@@ -84,6 +110,7 @@ uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 #include "shared/light_cells.h"
 #include "shared/refined.h"
 #include "shared/hidden_light.h"
+#define surfaceProbes() SCONCE_SURFACE_PROBES
 #include "shared/surface_light.h"
 #include "shared/live_text.h"
 #include "shared/ray_query.h"

@@ -1,5 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shared/frame_passes.h"
+layout(constant_id = kSurfaceProbesId) const int kBlended = 2; // probes
+#define SCONCE_SURFACE_PROBES kBlended
+#define SCONCE_ASKS_FOR_MAPS
 #include "light_field.glsl"
 #include "gbuffer_read.glsl"
 #define SCONCE_LEAVES_LOOK_UPS

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define SCONCE_ASKS_FOR_MAPS
 #include "light_field.glsl"
 #define SCONCE_QUERY sconceQuery
 #include "trace_rays.glsl"

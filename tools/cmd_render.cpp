@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "bench/opponents/baselines.h"
+#include "runtime/field/field_stream.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/light_groups.h"
 #include "runtime/field/live_light.h"
@@ -48,7 +49,31 @@ struct RenderOptions : FrameChoice
     std::vector<float> lens; // k1, k2
     float warmUp = knobs::warmUpSeconds.value;
     uint32_t width = knobs::width.value, height = knobs::height.value, frames = knobs::drawnFrames.value;
+    uint32_t resident = knobs::resident.value;
 };
+
+/// A light field as a picture needs it.
+struct OpenedField
+{
+    FieldData data;
+    std::optional<MapFile> maps; // of one whose maps come as they are asked for; `data` is without them then
+};
+
+Result<OpenedField> openFor(const RenderOptions& options)
+{
+    if (options.resident == 0)
+    {
+        Result<FieldData> data = loadFieldFor(options.field, options.tracer);
+        if (!data) return data.error();
+        return OpenedField{std::move(*data), std::nullopt};
+    }
+    if (options.tracer != "ours")
+        return Error{ErrorCode::badArgument,
+                     fmt::format("--tracer {} reads all maps; leave it out, or --resident {}.", options.tracer, options.resident)};
+    Result<FieldAndMaps> opened = openField(options.field);
+    if (!opened) return opened.error();
+    return OpenedField{std::move(opened->field), std::move(opened->maps)};
+}
 
 /// What `light` becomes by the options of a day.
 struct Day
@@ -87,10 +112,30 @@ struct Drawn
     std::map<std::string, std::vector<double>> passMs;
     std::vector<std::string> passes; // in the order of the frame
     uint64_t deviceBytes = 0;
+    std::optional<FieldStream::Counts> streamed;
 };
 
+/// Draws until all maps that the picture asks for are there, or as many as there is room for.
+Status settleMaps(Gpu& gpu, SceneRenderer& renderer, FieldStream& stream, const Camera& camera, const Progress& progress)
+{
+    constexpr int kStill = 4; // frames without a change: some are in flight before what they ask for is known
+    for (int still = 0; still < kStill;)
+    {
+        const FieldStream::Counts before = stream.counts();
+        if (Status status = gpu.submit([&](VkCommandBuffer cmd) { stream.record(cmd, camera.eye); }); !status) return status;
+        if (const auto times = renderer.draw(camera); !times) return times.error();
+        if (Status status = stream.status(); !status) return status;
+        const FieldStream::Counts counts = stream.counts();
+        if (!progress("read maps", counts.resident == 0 ? 0.0 : double(counts.resident) / (counts.resident + counts.missing)))
+            return Error{ErrorCode::cancelled, "Interrupted; nothing was written."};
+        const bool changed = counts.read != before.read || counts.missing != before.missing || stream.state().reader->reads();
+        still = changed ? 0 : still + 1;
+    }
+    return success();
+}
+
 Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, const RenderSettings& settings, const Camera& camera,
-                         uint32_t frames, float warmUp, const Context& context)
+                         uint32_t frames, float warmUp, FieldStream* stream, const Context& context)
 {
     const Error interrupted{ErrorCode::cancelled, "Interrupted; nothing was written."};
     // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
@@ -100,6 +145,8 @@ Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, 
     const auto renderer = SceneRenderer::create(gpu, *deviceScene, field, settings);
     if (!renderer) return renderer.error();
     const Progress progress = consoleProgress(context);
+    if (stream)
+        if (Status status = settleMaps(gpu, **renderer, *stream, camera, progress); !status) return status.error();
     for (const Stopwatch watch; watch.seconds() < warmUp;)
     {
         if (!progress("warm up", watch.seconds() / warmUp)) return interrupted;
@@ -129,6 +176,7 @@ Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, 
     if (!frame) return frame.error();
     drawn.frame = std::move(*frame);
     drawn.deviceBytes = (*renderer)->deviceBytes();
+    if (stream) drawn.streamed = stream->counts();
     return drawn;
 }
 
@@ -215,7 +263,7 @@ int drawDay(const RenderOptions& options, Gpu& gpu, Scene& scene, const LightFie
         scene.lights = day.light.fixed;
         scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
         capScene(scene, plan);
-        const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, 0.0f, context);
+        const Result<Drawn> drawn = drawFrames(gpu, scene, field, settings, camera, 1, 0.0f, nullptr, context);
         if (!drawn) return fail(drawn.error());
         PictureOptions pictures = options.pictures;
         pictures.output = numbered(options.pictures.output, i);
@@ -309,8 +357,9 @@ int runRender(RenderOptions options, const Context& context)
     const Result<EffectPlan> plan = planFor(options, *scene);
     if (!plan) return fail(plan.error());
     noteGivenUp(context, *plan);
-    const Result<FieldData> data = loadFieldFor(options.field, options.tracer);
-    if (!data) return fail(data.error());
+    Result<OpenedField> opened = openFor(options);
+    if (!opened) return fail(opened.error());
+    const FieldData* const data = &opened->data;
     if (!data->sceneName.empty() && data->sceneName != scene->name)
         note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
 
@@ -340,8 +389,16 @@ int runRender(RenderOptions options, const Context& context)
     if (!device) return fail(device.error());
     Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
     if (!gpu) return fail(gpu.error());
-    Result<LightField> field = makeLightField(**gpu, *data, tracer);
+    Result<LightField> field = opened->maps ? makeStreamedField(**gpu, *data, std::move(*opened->maps), options.resident, tracer)
+                                            : makeLightField(**gpu, *data, tracer);
     if (!field) return fail(field.error());
+    std::optional<FieldStream> stream;
+    if (options.resident > 0)
+    {
+        auto made = makeFieldStream(**gpu, *field, {});
+        if (!made) return fail(made.error());
+        stream = std::move(*made);
+    }
     std::optional<double> groupsMs;
     std::map<std::string, double> liveMs; // by pass
     std::optional<LiveLight> live;
@@ -368,7 +425,7 @@ int runRender(RenderOptions options, const Context& context)
                  "radiance. Bake it with --effects all.");
         return drawWithoutGeometry(options, **gpu, device->name(), *field, *fromField, context);
     }
-    if ((settings.effects.glossy || settings.effects.mirror) && data->radiance.empty())
+    if ((settings.effects.glossy || settings.effects.mirror) && !field->holdsRadiance())
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
              "radiance. Bake it with --effects all.");
@@ -379,7 +436,8 @@ int runRender(RenderOptions options, const Context& context)
         settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
     }
     if (!lighting->path.empty()) return drawDay(options, **gpu, *scene, *field, *live, *lighting, settings, *camera, *plan, context);
-    const Result<Drawn> drawn = drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, options.warmUp, context);
+    const Result<Drawn> drawn =
+        drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, options.warmUp, stream ? &*stream : nullptr, context);
     if (!drawn) return fail(drawn.error());
 
     // All that the picture depends on, so that it can be drawn again from what stands beside it.
@@ -395,6 +453,7 @@ int runRender(RenderOptions options, const Context& context)
     json["device_bytes"] = drawn->deviceBytes;
     json["samples"] = settings.glossyRays;
     json["trace_every"] = settings.traceEvery;
+    json["surface_probes"] = settings.surfaceProbes;
     json["rays_below"] = settings.raysBelow;
     json["diffuse"] = diffuse;
     json["area_shadows"] = options.areaShadows;
@@ -409,6 +468,12 @@ int runRender(RenderOptions options, const Context& context)
         json["live_light_ms"] = liveMs;
         json["live_device_bytes"] = live->deviceBytes();
     }
+    if (drawn->streamed)
+        json["stream"] = {{"resident", drawn->streamed->resident},
+                          {"missing", drawn->streamed->missing},
+                          {"read", drawn->streamed->read},
+                          {"full", drawn->streamed->full},
+                          {"field_device_bytes", field->deviceBytes()}};
     json["frame_ms"] = drawn->frameMs.empty() ? Json(nullptr) : Json(median(drawn->frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : drawn->passes) json["passes_ms"][pass] = median(drawn->passMs.at(pass));
@@ -449,6 +514,7 @@ void addRenderCommand(CLI::App& app, Context& context)
         ->needs("--shapes");
     addKnob(command, "--frames", options->frames, knobs::drawnFrames);
     addKnob(command, "--warm-up", options->warmUp, knobs::warmUpSeconds);
+    addKnob(command, "--resident", options->resident, knobs::resident);
     addGroups(command, options->groups, "Lights of the scene for --dim, where the field has no groups");
     addDims(command, options->dims, "; of a field's groups its light, too");
     command
@@ -479,8 +545,8 @@ void addRenderCommand(CLI::App& app, Context& context)
     options->pictures.add(command, frameLayers());
     options->quality.add(command);
     // What only geometry's pixels have.
-    for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--no-denoise",
-                              "--temporal", "--roughness", "--sun-path", "--shapes"})
+    for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every",
+                              "--surface-probes", "--no-denoise", "--temporal", "--roughness", "--sun-path", "--shapes", "--resident"})
         fromField->excludes(command->get_option(other));
     onChosen(command, context, options, runRender);
 }

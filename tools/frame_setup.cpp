@@ -27,6 +27,7 @@ void addFrameOptions(CLI::App* command, FrameChoice& choice)
     addKnob(command, "--samples", choice.samples, knobs::glossyRays);
     addKnob(command, "--area-samples", choice.areaSamples, knobs::areaSamples);
     addKnob(command, "--trace-every", choice.traceEvery, knobs::traceEvery);
+    addKnob(command, "--surface-probes", choice.surfaceProbes, knobs::surfaceProbes);
     addSwitch(command, "--no-denoise", choice.noDenoise, knobs::denoise);
     addSwitch(command, "--temporal", choice.temporal, knobs::temporal);
     addKnob(command, "--roughness", choice.roughness, knobs::roughness, "R");
@@ -57,6 +58,7 @@ Result<RenderSettings> settingsFor(const FrameChoice& choice, const EffectPlan& 
     RenderSettings settings;
     settings.glossyRays = choice.samples;
     settings.traceEvery = choice.traceEvery;
+    settings.surfaceProbes = choice.surfaceProbes;
     settings.raysBelow = choice.raysBelow;
     settings.roughness = choice.roughness;
     settings.seed = choice.seed;

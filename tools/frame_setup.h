@@ -24,7 +24,8 @@ static_assert(kSurface == "surface" && kPatches == "patches" && kTraced == "trac
 struct FrameChoice
 {
     std::string effects = "auto"; // as planEffects() takes them
-    uint32_t samples = knobs::glossyRays.value, traceEvery = knobs::traceEvery.value, seed = knobs::frameSeed.value;
+    uint32_t samples = knobs::glossyRays.value, traceEvery = knobs::traceEvery.value, surfaceProbes = knobs::surfaceProbes.value,
+             seed = knobs::frameSeed.value;
     uint32_t areaSamples = 0; // 0: by samples
     std::optional<float> roughness;
     float raysBelow = knobs::raysBelow.value;

@@ -9,6 +9,7 @@
     bench/pages/effects_table.sh                                bench/results/effects.json and effects_passes.json
     bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
+    bench/pages/stream_table.sh                                 bench/results/streaming.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
     python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote; notes may follow
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
@@ -457,6 +458,26 @@ def movings(arguments):
            "pass: over diffuse light and rough reflections; frame_ratio: the whole frame's time, told over untold"], rows)
 
 
+def fly(arguments):
+    """A flight's row: what a streamed field's frames are off by."""
+    flight, settled, name = json.loads(Path(arguments[0]).read_text()), json.loads(Path(arguments[1]).read_text()), arguments[2]
+    root = lambda key: f"{100 * flight['error'][key] ** 0.5:.1f}"
+    row = {"label": f"{name}, {flight['resident']} of {flight['probes']} probes, {flight['speed']:.0f} m/s", "settled_flip": f"{settled['flip']:.3f}", "settled_mean": f"{settled['mean']:.3f}", "median_error": root("median"), "p90_error": root("p90"),
+           "worst_error": root("worst"), "least_light": f"{flight['light']['least']:.3f}", "most_light": f"{flight['light']['most']:.3f}",
+           "cut_frames": str(flight["cut"]["frames"]), "cut_light": f"{flight['cut']['first_light']:.2f}", "most_missing": f"{flight['most_missing']:.0f}", "read": str(flight["read"]), "mib": f"{flight['device_bytes'] / 2**20:.1f}",
+           "whole_mib": f"{flight['whole_device_bytes'] / 2**20:.1f}", "p999_over_median": f"{flight['frame_ms']['p999'] / flight['frame_ms']['median']:.2f}",
+           "copy_most_ms": f"{flight['copy_ms']['most']:.1f}"}
+    print(f'  "{slug(name)}_{flight["resident"]}_{flight["speed"]:.0f}": {json.dumps(row)},', flush=True)
+
+
+def flights(arguments):
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("streaming.json", "A camera that flies from probe to probe through a field whose maps come from its file, against the whole field", ["bench/pages/stream_table.sh"],
+          ["error: root of the mean squared difference of indirect light, % of its mean; light: ratio of the means, of the worst frames",
+           "settled: of the scene's first view once what it asks for has come, FLIP and mean over those of the whole field; 320x180, 200 frames at 60 a second, at most 2 probes copied in one; mib: of the field on the device, with what is on its way; read: probes from the file",
+           "missing: of the probes that pixels and rays asked for; cut: frames until the error is below a tenth where the flight begins without a map on the device, and the first one's light"], rows)
+
+
 def least_and_most(texts):
     numbers = sorted((float(text), text) for text in texts if text != "nan")
     return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
@@ -464,7 +485,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

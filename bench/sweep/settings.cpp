@@ -105,6 +105,7 @@ std::vector<SweptKnob> makeKnobs()
         knob("far bounds", trace, ours, {"0", "1"}, knobs::farBounds, SCONCE_FIELD(quality.trace.farBounds)),
         knob("rays", frame, tracers, {"1", "2", "4", "8"}, knobs::glossyRays, SCONCE_FIELD(frame.glossyRays)),
         knob("trace every", frame, tracers, {"1", "2", "4", "8", "16"}, knobs::traceEvery, SCONCE_FIELD(frame.traceEvery)),
+        knob("surface probes", frame, fields, {"1", "2"}, knobs::surfaceProbes, SCONCE_FIELD(frame.surfaceProbes)),
         knob("area samples", frame, placed, {"2", "8", "32"}, knobs::areaSamples, SCONCE_FIELD(frame.areaSamples)),
         knob("field shadows", frame, fields, {"off", "on"}, knobs::areaShadows, SCONCE_FIELD(frame.effects.fieldShadows)),
         knob("denoise", frame, placed, {"on", "off"}, knobs::denoise, SCONCE_FIELD(frame.effects.denoise)),

@@ -71,9 +71,23 @@ Result<GpuImage> uploadOctree(Gpu& gpu, const Octree& octree)
     return image;
 }
 
-} // namespace
+/// Room for maps, none of which is there.
+Result<std::unique_ptr<MapPool>> makePool(Gpu& gpu, MapFile file, uint32_t slots, uint32_t probes)
+{
+    auto pool = std::make_unique<MapPool>(MapPool{std::move(file), slots});
+    const std::vector<uint32_t> nowhere(probes, gpu::kNoProbe);
+    auto where = gpu.makeTexelBuffer<uint32_t>(nowhere, VK_FORMAT_R32_UINT, "slots of maps");
+    if (!where) return where.error();
+    pool->slotOfProbe = std::move(*where);
+    auto asked = gpu.makeBuffer(probes * sizeof(uint32_t), 0, MemoryUse::readback, "maps asked for");
+    if (!asked) return asked.error();
+    pool->asked = std::move(*asked);
+    std::memset(pool->asked.mapped(), 0, pool->asked.size());
+    return pool;
+}
 
-Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality, WordAccess access)
+/// @param pool  of a field whose maps come later; null: the field has them
+Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& quality, WordAccess access, std::unique_ptr<MapPool> pool)
 {
     if (field.probes.empty()) return Error{ErrorCode::badArgument, "the light field has no probes; bake one with at least one probe"};
     const auto state = std::make_shared<LightField::State>();
@@ -90,21 +104,27 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
         std::span<const uint32_t> words;
         const char* what;
         uint32_t binding;
+        size_t room = 0; // words that come later
+        size_t size() const { return std::max(words.size(), room); }
     };
-    const Part parts[] = {{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding},
-                          {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding},
+    const size_t distances = pool ? pool->slots * pool->file.distanceWords() : 0,
+                 radiances = pool ? pool->slots * pool->file.radianceWords() : 0;
+    const Part parts[] = {{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding, distances},
+                          {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding, radiances},
                           {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
                           {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding},
                           {made.surface, field.surfaceLight, "surface light", gpu::kFieldSurfaceBinding}};
     // All or none: one way of reading is compiled into each shader.
     made.byTexels =
         access == WordAccess::texelBuffers &&
-        std::ranges::all_of(parts, [&](const Part& part) { return part.words.size() <= gpu.properties.limits.maxTexelBufferElements; });
+        std::ranges::all_of(parts, [&](const Part& part) { return part.size() <= gpu.properties.limits.maxTexelBufferElements; });
     for (const Part& part : parts)
     {
-        if (part.words.empty()) continue;
-        auto buffer = made.byTexels ? gpu.makeTexelBuffer<uint32_t>(part.words, VK_FORMAT_R32_UINT, part.what)
-                                    : gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
+        if (part.size() == 0) continue;
+        auto buffer = part.words.empty() ? (made.byTexels ? gpu.makeTexelBuffer(part.room * 4, VK_FORMAT_R32_UINT, part.what)
+                                                          : gpu.makeBuffer(part.room * 4, 0, MemoryUse::device, part.what))
+                      : made.byTexels    ? gpu.makeTexelBuffer<uint32_t>(part.words, VK_FORMAT_R32_UINT, part.what)
+                                         : gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
         if (!buffer) return buffer.error();
         part.buffer = std::move(*buffer);
         made.bytes += part.buffer.size();
@@ -120,7 +140,7 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
         made.lampCount = uint32_t(field.lamps.size());
         made.bytes += made.lamps.size();
     }
-    made.radianceHeld = !field.radiance.empty();
+    made.radianceHeld = made.radiance.size() > 0;
     auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, VK_FORMAT_R32G32B32A32_SFLOAT, "probe headers");
     if (!probes) return probes.error();
     made.probes = std::move(*probes);
@@ -150,7 +170,8 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
                                                {gpu::kFieldRadianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldIrradianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldPrefilteredBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
-                                               {gpu::kFieldSurfaceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+                                               {gpu::kFieldSurfaceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                                               {gpu::kFieldSlotsBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
@@ -159,10 +180,31 @@ Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Qualit
     made.set.write(gpu::kFieldPatchesBinding, made.patches);
     // What isn't there, or is read by address, is bound to something that is there.
     for (const Part& part : parts) made.set.write(part.binding, made.byTexels && part.buffer ? part.buffer : made.patches);
+    made.maps = std::move(pool);
+    if (made.maps) made.bytes += made.maps->slotOfProbe.size() + made.maps->asked.size();
+    made.set.write(gpu::kFieldSlotsBinding, made.maps ? made.maps->slotOfProbe : made.patches);
     made.set.write(gpu::kFieldOctreeBinding, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     // Last: the block that it fills holds the addresses of the buffers above.
     if (auto status = made.setQuality(quality); !status) return status.error();
     return LightField(state);
+}
+
+} // namespace
+
+Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality, WordAccess access)
+{
+    return makeField(gpu, field, quality, access, nullptr);
+}
+
+Result<LightField> makeStreamedField(Gpu& gpu, const FieldData& field, MapFile maps, uint32_t resident, const Quality& quality)
+{
+    const auto probes = uint32_t(field.probes.size());
+    if (resident < 1 || resident > probes)
+        return Error{ErrorCode::badArgument,
+                     fmt::format("resident is {}; give 1 to the {} probes of the light field, or 0 for all", resident, probes)};
+    auto pool = makePool(gpu, std::move(maps), resident, probes);
+    if (!pool) return pool.error();
+    return makeField(gpu, field, quality, WordAccess::texelBuffers, std::move(*pool));
 }
 
 Status LightField::State::setQuality(const Quality& quality)
@@ -179,6 +221,7 @@ Status LightField::State::setQuality(const Quality& quality)
                                  lamps.address(),
                                  liveIncident.address(),
                                  liveAlbedo.address(),
+                                 maps ? maps->asked.address() : 0,
                                  radianceWeight,
                                  lampCount};
     return gpu->upload(block, 0, std::as_bytes(std::span(&values, 1)));
@@ -199,10 +242,11 @@ VkDescriptorSet LightField::descriptorSet() const
 std::array<uint32_t, 2> LightField::constants() const
 {
     std::array<uint32_t, 2> values{};
-    values[gpu::kFieldFlagsId] =
-        (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
-        (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
-        (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u) | (shared->prefiltered.size() > 0 ? gpu::kHoldsPrefiltered : 0u);
+    values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
+                                 (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
+                                 (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
+                                 (shared->maps ? gpu::kStreams : 0u) | (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u) |
+                                 (shared->prefiltered.size() > 0 ? gpu::kHoldsPrefiltered : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

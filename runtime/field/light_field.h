@@ -3,11 +3,22 @@
 #include <memory>
 
 #include "runtime/field/field_data.h"
+#include "runtime/field/light_field_file.h"
 #include "runtime/sconce.h"
 #include "runtime/vulkan/pipeline.h"
 
 namespace sconce
 {
+
+/// Of a field that streams: room for the maps of some probes, which FieldStream fills.
+struct MapPool
+{
+    MapFile file;
+    uint32_t slots = 0; // probes whose maps there is room for
+    Buffer slotOfProbe; // kNoProbe: not there
+    Buffer asked;       // a count for each probe, of passes, taken and cleared by the host
+    bool fed = false;   // a FieldStream has it
+};
 
 /// What stands behind the handle LightField.
 struct LightField::State
@@ -20,6 +31,7 @@ struct LightField::State
     vec3 radianceWeight{1.0f};       // see gpu::FieldBlock
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
     GpuImage octree;
+    std::unique_ptr<MapPool> maps; // null: the maps of all probes are there
     DescriptorSet set;
     std::vector<std::string> effects;
     std::string sceneName;
@@ -40,6 +52,10 @@ enum class WordAccess
 /// Uploads a baked field. Errors: badArgument (no probes, knobs out of range: named), outOfMemory (names the bytes), deviceFailure.
 Result<LightField> makeLightField(Gpu& gpu, const FieldData& field, const Quality& quality = {},
                                   WordAccess access = WordAccess::texelBuffers);
+
+/// Uploads all but the maps. @param field  without them. @param resident  probes whose maps there is room for, 1 to all
+/// Errors: as makeLightField().
+Result<LightField> makeStreamedField(Gpu& gpu, const FieldData& field, MapFile maps, uint32_t resident, const Quality& quality = {});
 
 /// LightField::constants() as pipelines take them.
 std::array<ShaderConstant, 2> shaderConstants(const LightField& field);

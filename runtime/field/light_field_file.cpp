@@ -34,6 +34,7 @@ using Bytes = std::vector<std::byte>;
 constexpr char kMagic[8] = {'\x89', 'S', 'C', 'O', 'N', 'C', 'E', '\n'}; // not text, and a transfer that rewrites line ends damages it
 constexpr char kEnd[8] = {'S', 'C', 'O', 'N', 'C', 'E', '.', '\n'};
 constexpr uint64_t kChunkBytes = 16u << 20;    // a section is cut into blocks of at most this many bytes
+constexpr uint64_t kMapBytes = 256u << 10;     // and, of maps, of about so many, but whole probes
 constexpr uint64_t kZstdMaxRatio = 128u << 10; // a zstd block of 4 bytes stands for at most 128 KiB; more is no real file
 constexpr int kZstdLevel = 3;
 constexpr uint32_t kMaxBlocks = 1u << 20;
@@ -682,14 +683,30 @@ Status readBlock(Reader& reader, const Block& block, Bytes& stored, std::span<st
     return success();
 }
 
-/// Appends the section in blocks, and each block's entry to the table.
-Status appendSection(SafeFile& file, Section section, std::span<const std::byte> raw, uint64_t& offset, std::vector<Block>& blocks)
+/// Bytes of a section's blocks but the last: of the maps as many probes as come to kMapBytes, at least one, so that they can be read one by
+/// one.
+uint64_t blockBytes(Section section, const gpu::LightFieldInfo& info)
 {
-    Bytes packed(ZSTD_compressBound(std::min<uint64_t>(raw.size(), kChunkBytes)));
+    const uint64_t probe = section == distance   ? uint64_t(info.wordsPerProbe) * 4
+                           : section == radiance ? uint64_t(radianceWordsPerProbe(info.chart, info.faceSize)) * 4
+                                                 : 0;
+    return probe == 0 || probe > kChunkBytes ? kChunkBytes : probe * std::max<uint64_t>(1, kMapBytes / probe);
+}
+
+uint64_t blocksOf(uint64_t bytes, uint64_t ofBlock)
+{
+    return std::max<uint64_t>(1, (bytes + ofBlock - 1) / ofBlock); // an empty section has one block, of 0 bytes
+}
+
+/// Appends the section in blocks, and each block's entry to the table.
+Status appendSection(SafeFile& file, Section section, std::span<const std::byte> raw, uint64_t most, uint64_t& offset,
+                     std::vector<Block>& blocks)
+{
+    Bytes packed(ZSTD_compressBound(std::min<uint64_t>(raw.size(), most)));
     uint32_t chunk = 0;
     do
     {
-        const std::span<const std::byte> piece = raw.first(std::min<uint64_t>(raw.size(), kChunkBytes));
+        const std::span<const std::byte> piece = raw.first(std::min<uint64_t>(raw.size(), most));
         raw = raw.subspan(piece.size());
         const size_t size = ZSTD_compress(packed.data(), packed.size(), piece.data(), piece.size(), kZstdLevel);
         const bool smaller = !ZSTD_isError(size) && size < piece.size();
@@ -737,8 +754,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     for (uint32_t section = 0; section < sectionsHere; ++section)
     {
         rawBytes[section] = sections[section].size();
-        // An empty section has one block, of 0 bytes.
-        blockCount += std::max<uint64_t>(1, (rawBytes[section] + kChunkBytes - 1) / kChunkBytes);
+        blockCount += blocksOf(rawBytes[section], blockBytes(Section(section), field.info));
     }
     std::string problem = sizeProblem(field.info, treeHeader, rawBytes);
     if (problem.empty()) problem = contentProblem(field);
@@ -751,7 +767,10 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     if (Status status = file->append(Bytes(offset)); !status) return status;
     std::vector<Block> blocks;
     for (uint32_t section = 0; section < sectionsHere; ++section)
-        if (Status status = appendSection(*file, Section(section), sections[section], offset, blocks); !status) return status;
+        if (Status status =
+                appendSection(*file, Section(section), sections[section], blockBytes(Section(section), field.info), offset, blocks);
+            !status)
+            return status;
 
     Header header{{}, fileVersionOf(field), uint32_t(blocks.size()), offset + sizeof(Footer), checksum(std::as_bytes(std::span(blocks))),
                   0};
@@ -765,29 +784,24 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     return file->commit();
 }
 
-Result<FieldData> loadChecked(const std::filesystem::path& path)
+/// @param maps  whether distance and radiance are read; else they stay empty
+Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
 {
-    Result<Reader> reader = Reader::open(path);
-    if (!reader) return reader.error();
-    VerifyReport rows;
-    Result<Table> table = readTable(*reader, rows);
-    if (!table) return table.error();
-
     uint64_t rawBytes[sectionCount] = {};
-    for (const Block& block : table->blocks) rawBytes[block.section] += block.rawBytes;
+    for (const Block& block : table.blocks) rawBytes[block.section] += block.rawBytes;
     FieldData field;
-    field.fileVersion = table->header.version;
+    field.fileVersion = table.header.version;
     OctreeHeader treeHeader{};
     std::string text;
     Bytes stored;
     const auto readInto = [&](Section section, std::span<std::byte> raw) -> Status
     {
         if (rawBytes[section] != raw.size())
-            return reader->damage(fmt::format("its section '{}' has the wrong size", kSectionNames[section]));
-        for (const Block& block : table->blocks)
+            return reader.damage(fmt::format("its section '{}' has the wrong size", kSectionNames[section]));
+        for (const Block& block : table.blocks)
         {
             if (block.section != section) continue;
-            if (Status status = readBlock(*reader, block, stored, raw.first(block.rawBytes)); !status) return status;
+            if (Status status = readBlock(reader, block, stored, raw.first(block.rawBytes)); !status) return status;
             raw = raw.subspan(block.rawBytes);
         }
         return success();
@@ -795,19 +809,22 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
     // The two small sections that say how large the others must be come first, so that nothing large is allocated for a lie.
     if (Status status = readInto(info, std::as_writable_bytes(std::span(&field.info, 1))); !status) return status.error();
     if (Status status = readInto(octree, std::as_writable_bytes(std::span(&treeHeader, 1))); !status) return status.error();
-    if (const std::string problem = sizeProblem(field.info, treeHeader, rawBytes); !problem.empty()) return reader->damage(problem);
+    if (const std::string problem = sizeProblem(field.info, treeHeader, rawBytes); !problem.empty()) return reader.damage(problem);
     applyHeader(treeHeader, field.octree);
     text.resize(rawBytes[meta]);
     if (Status status = readInto(meta, std::as_writable_bytes(std::span(text))); !status) return status.error();
-    if (!applyMeta(text, field)) return reader->damage("block 'meta' is not the JSON text it should be");
+    if (!applyMeta(text, field)) return reader.damage("block 'meta' is not the JSON text it should be");
     const uint64_t ofGroup = rawBytes[radiance] + rawBytes[irradiance] + rawBytes[prefiltered] + rawBytes[surface];
     if (rawBytes[groupShares] != field.groups.size() * ofGroup)
-        return reader->damage(
+        return reader.damage(
             fmt::format("its section '{}' has another size than its {} groups", kSectionNames[groupShares], field.groups.size()));
     std::vector<uint32_t> shares(rawBytes[groupShares] / sizeof(uint32_t));
     field.probes.resize(rawBytes[probes] / sizeof(gpu::ProbeHeader));
-    field.distance.resize(rawBytes[distance] / sizeof(uint32_t));
-    field.radiance.resize(rawBytes[radiance] / sizeof(uint32_t));
+    if (maps)
+    {
+        field.distance.resize(rawBytes[distance] / sizeof(uint32_t));
+        field.radiance.resize(rawBytes[radiance] / sizeof(uint32_t));
+    }
     field.irradiance.resize(rawBytes[irradiance] / sizeof(uint32_t));
     field.octree.texels.resize(rawBytes[octreeTexels] / sizeof(uint16_t));
     field.prefiltered.resize(rawBytes[prefiltered] / sizeof(uint32_t));
@@ -841,7 +858,10 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
         {liveAlbedo, std::as_writable_bytes(std::span(field.live.albedo))},
     };
     for (const auto& [section, raw] : parts)
+    {
+        if (!maps && (section == distance || section == radiance)) continue;
         if (Status status = readInto(section, raw); !status) return status.error();
+    }
     auto word = shares.cbegin();
     for (LightGroup& group : field.groups)
         for (const LightPart& part : kLightParts)
@@ -850,8 +870,18 @@ Result<FieldData> loadChecked(const std::filesystem::path& path)
             (group.*part.share).assign(word, end);
             word = end;
         }
-    if (const std::string problem = contentProblem(field); !problem.empty()) return reader->damage(problem);
+    if (const std::string problem = contentProblem(field); !problem.empty()) return reader.damage(problem);
     return field;
+}
+
+Result<FieldData> loadChecked(const std::filesystem::path& path)
+{
+    Result<Reader> reader = Reader::open(path);
+    if (!reader) return reader.error();
+    VerifyReport rows;
+    Result<Table> table = readTable(*reader, rows);
+    if (!table) return table.error();
+    return readField(*reader, *table, true);
 }
 
 Result<VerifyReport> verifyChecked(const std::filesystem::path& path)
@@ -913,6 +943,92 @@ Status saveField(const FieldData& field, const std::filesystem::path& file)
 Result<FieldData> loadField(const std::filesystem::path& file)
 {
     return guarded(file, [&] { return loadChecked(file); });
+}
+
+struct MapFile::State
+{
+    Reader reader;
+    std::vector<Block> distanceBlocks, radianceBlocks;
+    size_t distanceWords = 0, radianceWords = 0; // of a probe
+    Bytes stored, raw;
+
+    /// Of one of the two sections, from a byte on.
+    Status read(std::span<const Block> blocks, uint64_t from, std::span<std::byte> out)
+    {
+        uint64_t at = 0; // of the block in its section
+        for (const Block& block : blocks)
+        {
+            const uint64_t first = std::max(from, at), last = std::min(from + out.size(), at + block.rawBytes);
+            if (first < last)
+            {
+                raw.resize(block.rawBytes);
+                if (Status status = readBlock(reader, block, stored, raw); !status) return status;
+                std::ranges::copy(std::span(raw).subspan(first - at, last - first), out.begin() + std::ptrdiff_t(first - from));
+            }
+            at += block.rawBytes;
+        }
+        return success();
+    }
+};
+
+MapFile::MapFile(std::unique_ptr<State> made) : owned(std::move(made)) {}
+MapFile::MapFile(MapFile&&) noexcept = default;
+MapFile& MapFile::operator=(MapFile&&) noexcept = default;
+MapFile::~MapFile() = default;
+
+size_t MapFile::distanceWords() const
+{
+    return owned->distanceWords;
+}
+
+size_t MapFile::radianceWords() const
+{
+    return owned->radianceWords;
+}
+
+Status MapFile::read(uint32_t probe, std::span<uint32_t> distance_, std::span<uint32_t> radiance_)
+{
+    return guarded(owned->reader.name,
+                   [&]() -> Status
+                   {
+                       const auto bytes = [](std::span<uint32_t> words) { return std::as_writable_bytes(words); };
+                       if (Status status = owned->read(owned->distanceBlocks, probe * uint64_t(distance_.size_bytes()), bytes(distance_));
+                           !status)
+                           return status;
+                       return owned->read(owned->radianceBlocks, probe * uint64_t(radiance_.size_bytes()), bytes(radiance_));
+                   });
+}
+
+Result<FieldAndMaps> openField(const std::filesystem::path& file)
+{
+    return guarded(
+        file,
+        [&]() -> Result<FieldAndMaps>
+        {
+            Result<Reader> reader = Reader::open(file);
+            if (!reader) return reader.error();
+            VerifyReport rows;
+            Result<Table> table = readTable(*reader, rows);
+            if (!table) return table.error();
+            Result<FieldData> field = readField(*reader, *table, false);
+            if (!field) return field.error();
+            if (field->info.chart != gpu::kChartCube || !field->groups.empty() || field->live.links > 0)
+                return Error{
+                    ErrorCode::badArgument,
+                    fmt::format("The maps of light field '{}' can't be read while frames are drawn: {}. Load all of it, or bake it {}.",
+                                file.string(), field->info.chart != gpu::kChartCube ? "they are octahedral" : "its light may change",
+                                field->info.chart != gpu::kChartCube ? "with cube faces" : "without light groups and live links")};
+            auto made = std::make_unique<MapFile::State>();
+            for (const Block& block : table->blocks)
+            {
+                if (block.section == distance) made->distanceBlocks.push_back(block);
+                if (block.section == radiance && block.rawBytes > 0) made->radianceBlocks.push_back(block);
+            }
+            made->distanceWords = field->info.wordsPerProbe;
+            if (!made->radianceBlocks.empty()) made->radianceWords = radianceWordsPerProbe(field->info.chart, field->info.faceSize);
+            made->reader = std::move(*reader);
+            return FieldAndMaps{std::move(*field), MapFile(std::move(made))};
+        });
 }
 
 Result<VerifyReport> verifyField(const std::filesystem::path& file)

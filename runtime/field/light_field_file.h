@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,38 @@ Status saveField(const FieldData& field, const std::filesystem::path& file);
 /// Reads it back; every checksum and every size is verified, and every octree index, before anything relies on it.
 /// Errors: fileError (cannot be read), badInput (names the damaged block, or the version), outOfMemory.
 Result<FieldData> loadField(const std::filesystem::path& file);
+
+/// The maps of an open .sconce file, read a probe at a time: distance and radiance, which are nearly all of it. Move-only; one thread at a
+/// time.
+class MapFile
+{
+public:
+    MapFile(MapFile&&) noexcept;
+    MapFile& operator=(MapFile&&) noexcept;
+    ~MapFile();
+    size_t distanceWords() const; // of a probe
+    size_t radianceWords() const; // 0: the field has none
+    /// Reads and checks one probe's. Cost: the blocks that they are in, each of one probe where a file was written for it, else of up to 16
+    /// MiB. Errors: fileError, badInput (names the damaged block), outOfMemory.
+    Status read(uint32_t probe, std::span<uint32_t> distance, std::span<uint32_t> radiance);
+
+    struct State;
+    explicit MapFile(std::unique_ptr<State> made);
+
+private:
+    std::unique_ptr<State> owned;
+};
+
+/// A light field without its maps: `field` has neither distance nor radiance words.
+struct FieldAndMaps
+{
+    FieldData field;
+    MapFile maps;
+};
+
+/// Reads all but the maps, whose blocks are checked when they are read. Errors: as loadField(), and badArgument for a field that has no
+/// cube faces, or whose light is in groups or moves: what changes light changes the maps.
+Result<FieldAndMaps> openField(const std::filesystem::path& file);
 
 struct BlockReport
 {

@@ -79,6 +79,19 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     {
         return !source.prefiltered.empty();
     }
+    bool holdsMaps(uint) const
+    {
+        return true;
+    }
+    uint mapSlot(uint probe) const
+    {
+        return probe;
+    }
+    void askForMaps(uint) const {}
+    int surfaceProbes() const
+    {
+        return kSurfaceProbes;
+    }
     const ProbeHeader& probeHeader(uint probe) const
     {
         if constexpr (kCounts) ++read.headers;

@@ -27,6 +27,7 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
     if (desc.width < 1 || desc.height < 1 || desc.width > most || desc.height > most)
         return fmt::format("frame size {}x{} is outside 1..{} pixels a side", desc.width, desc.height, most);
     if (const std::string fault = faultOf(knobs::traceEvery, desc.traceEvery); !fault.empty()) return fault;
+    if (const std::string fault = faultOf(knobs::surfaceProbes, desc.surfaceProbes); !fault.empty()) return fault;
     if (desc.movingShapes > gpu::kMostMovingShapes)
         return fmt::format("movingShapes is {}; give at most {}", desc.movingShapes, gpu::kMostMovingShapes);
     if (desc.effects.rough && !field.holdsPrefiltered())
@@ -238,7 +239,10 @@ Status IndirectLight::State::make()
         for (uint32_t isRest : {0u, 1u})
             if (auto s = makePass(isRest ? surfaceRestPass : surfacePass, surfaceSet, surface_light_comp,
                                   {{gpu::kSurfaceDiffuseBinding, &diffuseImage}},
-                                  {{gpu::kLookUpListId, isRest}, {gpu::kLookUpRestId, 1}, {gpu::kIsRestId, isRest}});
+                                  {{gpu::kLookUpListId, isRest},
+                                   {gpu::kLookUpRestId, 1},
+                                   {gpu::kIsRestId, isRest},
+                                   {gpu::kSurfaceProbesId, desc.surfaceProbes}});
                 !s)
                 return s;
     if (gathersDiffuse() || effects.rough)

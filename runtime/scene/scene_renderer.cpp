@@ -89,10 +89,10 @@ Status SceneRenderer::make()
     const IndirectEffects& effects = settings.effects;
     const bool rays = effects.glossy || effects.mirror;
     // First, since passes made below take its images and its list of tiles.
-    auto light = makeIndirectLight(
-        gpu, field,
-        {settings.width, settings.height, effects, settings.traceEvery, settings.layers && rays, uint32_t(settings.shapes.size())},
-        settings.lightShaders);
+    auto light = makeIndirectLight(gpu, field,
+                                   {settings.width, settings.height, effects, settings.traceEvery, settings.surfaceProbes,
+                                    settings.layers && rays, uint32_t(settings.shapes.size())},
+                                   settings.lightShaders);
     if (!light) return light.error();
     if (Status status = light->setShapes(settings.shapes); !status) return status;
     indirect.emplace(std::move(*light));

@@ -17,6 +17,7 @@ struct RenderSettings
     uint32_t width = knobs::width.value, height = knobs::height.value; // pixels
     uint32_t glossyRays = knobs::glossyRays.value;                     // rays a pixel; time of the trace grows in proportion
     uint32_t traceEvery = knobs::traceEvery.value;                     // as in IndirectLight::Desc
+    uint32_t surfaceProbes = knobs::surfaceProbes.value;               // the same
     IndirectEffects effects;
     bool layers = true;                              // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
     float raysBelow = knobs::raysBelow.value;        // roughness: reflections below it are traced, above it read from prefiltered radiance

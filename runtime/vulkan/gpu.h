@@ -120,6 +120,14 @@ public:
         if (auto status = makeTexelView(*buffer, format); !status) return status.error();
         return buffer;
     }
+    /// The same, to be written by the device.
+    Result<Buffer> makeTexelBuffer(VkDeviceSize bytes, VkFormat format, const char* what)
+    {
+        auto buffer = makeBuffer(std::max<VkDeviceSize>(bytes, 16), VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, MemoryUse::device, what);
+        if (!buffer) return buffer.error();
+        if (auto status = makeTexelView(*buffer, format); !status) return status.error();
+        return buffer;
+    }
     void releaseStaging() { staging = Buffer(); }
     /// The one layout of such bindings, which lives as long as this: a pipeline must not outlive the layouts that it was made with, and one
     /// that was made with a light field's is used with the next field's.

@@ -33,7 +33,7 @@ SCONCE_FN vec3 mapNormal(int face, vec3 g) { return onOctahedron() ? octantNorma
 /// First word of the map that a face of a probe lies on.
 SCONCE_FN uint mapWords(uint probe, int face)
 {
-    return probe * field.wordsPerProbe + (onOctahedron() ? 0u : uint(face) * (field.wordsPerProbe / 6u));
+    return mapSlot(probe) * field.wordsPerProbe + (onOctahedron() ? 0u : uint(face) * (field.wordsPerProbe / 6u));
 }
 
 /// Inside the ball about the centre nothing can be met: a segment that starts there starts where the ray leaves it (this also removes the

@@ -14,6 +14,7 @@ const uint kFieldRadianceBinding = 5u;
 const uint kFieldIrradianceBinding = 6u;
 const uint kFieldPrefilteredBinding = 7u;
 const uint kFieldSurfaceBinding = 8u;
+const uint kFieldSlotsBinding = 9u; // of each probe: where its maps are, kNoProbe where they are not on the device; where kStreams
 const uint kFieldFlagsId = 0u;
 const uint kHoldsRadianceId = 1u;
 const uint kReadsFarBounds = 1u; // bits of the flags: so that a pass without them pays nothing
@@ -21,6 +22,7 @@ const uint kOnOctahedron = 2u;
 const uint kHoldsRefined = 8u; // some texels of the surface light are refined
 const uint kHoldsPrefiltered = 32u; // there is prefiltered radiance
 const uint kHoldsLive = 16u; // rays find live light (live_light.h), besides the radiance that is baked
+const uint kStreams = 64u; // the maps of some probes are not on the device (FieldStream)
 const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 
 // The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.
@@ -35,6 +37,7 @@ const uint kByTexels = 4u; // words are texels of buffers; else they are read by
     DeviceAddress lampAddress; \
     DeviceAddress liveAddress;   /* incident live light of the texels */ \
     DeviceAddress albedoAddress; /* LiveTransport::albedo */ \
+    DeviceAddress askedAddress;  /* how often each probe's maps were asked for, where kStreams */ \
     vec3 radianceWeight;         /* of the baked radiance, where there is live light */ \
     uint lampCount;
 #ifdef __cplusplus
@@ -42,7 +45,7 @@ struct FieldBlock
 {
     SCONCE_FIELD_BLOCK
 };
-SCONCE_CHECK_SIZE(FieldBlock, 304);
+SCONCE_CHECK_SIZE(FieldBlock, 312);
 #endif
 
 SCONCE_STRUCTS_END

@@ -68,6 +68,7 @@ const uint kLampTermsId = 25u; // lamp_light.comp: bits of the terms that are ma
 const uint kLampEachId = 26u;  // lamp_light.comp
 const uint kMovingId = 27u;    // trace_glossy.comp: whether shapes move
 const uint kMovingBoxesId = 29u; // moving_light.comp: of boxes, else of round shapes
+const uint kSurfaceProbesId = 30u; // surface_light.comp
 const uint kMovingLooksId = 28u; // moving_light.comp: the field has prefiltered radiance, which tells what a shape hides
 
 struct DenoisePush

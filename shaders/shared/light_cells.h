@@ -53,8 +53,14 @@ SCONCE_FN vec4 axisLight(uint first, real along)
 SCONCE_FN vec4 cellLightAt(vec3 lifted, vec3 normal, uvec4 ranked)
 {
     uint eye = ranked.x;
+    bool best = false; // by its maps, if they are there
     for (int k = kRanked - 1; k >= 0; --k)
-        if (!hiddenFromProbe(ranked[k], lifted - vec3(probeHeader(ranked[k]).centre))) eye = ranked[k];
+    {
+        bool sees = !hiddenFromProbe(ranked[k], lifted - vec3(probeHeader(ranked[k]).centre));
+        if (!sees || (best && !holdsMaps(ranked[k]))) continue;
+        eye = ranked[k];
+        best = best || holdsMaps(eye);
+    }
     vec3 centre = vec3(probeHeader(eye).centre);
     ivec3 count = lightCells();
     vec3 at = (lifted - vec3(field.boundsLow)) / (real(field.voxel) * real(1 << field.cellShift)) - vec3(real(0.5));

@@ -3,7 +3,7 @@
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {
-    uint map = onOctahedron() ? probe : probe * 6u + uint(face);
+    uint map = onOctahedron() ? mapSlot(probe) : mapSlot(probe) * 6u + uint(face);
     return (map * field.faceSize + uint(y)) * field.faceSize + uint(x);
 }
 
@@ -89,6 +89,7 @@ SCONCE_FN vec3 planeOfDistance(uint probe, vec3 direction)
 /// before it, and more behind it. 0 for sky, and where nothing is known.
 SCONCE_FN vec3 planeSeen(uint probe, vec3 direction)
 {
+    if (!holdsMaps(probe)) return vec3(real(0.0)); // not known
     if (onOctahedron()) return dot(direction, direction) > real(1e-12) ? planeOfDistance(probe, direction) : vec3(real(0.0));
     int face = dominantFace(direction);
     vec3 uvw = faceCoordinates(face, direction);
@@ -97,16 +98,24 @@ SCONCE_FN vec3 planeSeen(uint probe, vec3 direction)
     real last = real(field.faceSize) - real(1.0);
     real x = clamp(floor(middle * (uvw.x / uvw.z + real(1.0))), real(0.0), last);
     real y = clamp(floor(middle * (uvw.y / uvw.z + real(1.0))), real(0.0), last);
-    uint word = distanceWord(probe * field.wordsPerProbe + uint(face) * (field.wordsPerProbe / 6u) + uint(y) * field.faceSize + uint(x));
+    uint word = distanceWord(mapWords(probe, face) + uint(y) * field.faceSize + uint(x));
     real gx = unpackGradient(word >> 16);
     real gy = unpackGradient(word >> 24);
     real inMiddle = real(1.0) + gx * (middle - x - real(0.5)) + gy * (middle - y - real(0.5)); // of the face, over q of the texel's centre
     return halfToReal(word) * faceDirection(face, vec3(middle * gx, middle * gy, inMiddle));
 }
 
+SCONCE_CONST real kBeyondMoments = real(1.0); // standard deviations beyond the mean distance from which on a point counts as hidden
 /// Whether a probe's map knows a surface between the probe and a point, relative to its centre. A wall thinner than the spread of the
-/// distances about it is nothing to Chebyshev's bound; to the plane of its texel it is one. 0.2 %: what a packed plane is off by.
-SCONCE_FN bool hiddenFromProbe(uint probe, vec3 p) { return dot(planeSeen(probe, p), p) > real(1.002); }
+/// distances about it is nothing to Chebyshev's bound; to the plane of its texel it is one. 0.2 %: what a packed plane is off by. Where its maps aren't
+/// on the device, by the moments of its distances.
+SCONCE_FN bool hiddenFromProbe(uint probe, vec3 p)
+{
+    if (holdsMaps(probe)) return dot(planeSeen(probe, p), p) > real(1.002);
+    real away = length(p);
+    vec2 moments = probeMoments(probe, p / max(away, real(1e-6)));
+    return away > moments.x + kBeyondMoments * sqrt(max(moments.y, real(0.0)));
+}
 
 /// How far off a ray meets a surface that a probe sees, field units; 0: none was found. The ray is followed from plane to plane: where it
 /// meets the one seen in its direction, the probe is asked again (as Szirmay-Kalos et al. 2005, "Approximate Ray-Tracing on the GPU with

@@ -84,6 +84,7 @@ SCONCE_FN bool canTrace(vec3 origin, vec3 direction)
 SCONCE_FN void enterProbe(SCONCE_INOUT(RayState) r, uint probe, real t)
 {
     addTried(r.asked.tried, probe);
+    askForMaps(probe);
     ++r.cost.handoffs;
     r.visit.probe = probe;
     ProbeHeader header = probeHeader(probe);
@@ -152,6 +153,11 @@ SCONCE_FN uint searchLeaves(SCONCE_INOUT(RayState) r, bool opinion)
             if (k >= quality.ranked) break;
             vec3 centre = vec3(probeHeader(ranked[k]).centre); // outside of the branches, which lanes beside each other all take
             bool tried = wasTried(r.asked.tried, ranked[k]);
+            if (!holdsMaps(ranked[k]))
+            {
+                if (!opinion && found == kNoProbe) askForMaps(ranked[k]);
+                continue;
+            }
             if (opinion)
             {
                 vec3 to = centre - pointAt(r.ray, r.t);

@@ -1,6 +1,6 @@
 // Surface light: the light that arrives at the surface points that a probe sees, one value a texel: a lightmap without a parametrisation of the
 // scene. A point that a probe sees reads its own light there, where probes in the open know only the light of the open. Shared text, see
-// probe_trace.h; needs surfaceWord(uint), planeSeen(), rankedProbesAt() and light_cells.h besides.
+// probe_trace.h; needs surfaceWord(uint), planeSeen(), rankedProbesAt(), surfaceProbes() and light_cells.h besides.
 //
 // A surface map has `surfaceSize` texels a side of each cube face, fewer than the distance map. Its texel stands for one point, that of the
 // distance texel that holds its centre: one that the probe sees. (Where the centre's own direction meets that texel's plane may lie beyond an edge,
@@ -19,7 +19,7 @@ SCONCE_CONST real kSurfaceSlack = real(0.05);  // of the distance to the texel's
 SCONCE_CONST real kSurfaceBend = real(0.7071); // cosine of the angle between normals up to which a surface goes on
 SCONCE_CONST real kSurfaceGrazing = real(0.05); // cosine at the point below which a probe sees too little of its surface
 SCONCE_CONST real kSurfaceLeast = real(0.05);  // share of the four taps that must lie on the surface
-SCONCE_CONST int kSurfaceProbes = 2;           // that light a point
+SCONCE_CONST int kSurfaceProbes = 2;           // that light a point; a frame may take fewer: surfaceProbes()
 SCONCE_CONST int kNearestReach = 2;            // texels to either side that the nearest one is searched in
 SCONCE_CONST real kNearestBend = real(0.5);
 SCONCE_CONST real kNearestWidths = real(3.0);
@@ -293,13 +293,15 @@ SCONCE_FN SurfaceSeen surfaceLightSeen(vec3 point, vec3 facing, vec3 lookUp, SCO
     if (ranked.z == ranked.x || ranked.z == ranked.y) density.z = real(0.0);
     if (ranked.w == ranked.x || ranked.w == ranked.y || ranked.w == ranked.z) density.w = real(0.0);
     real weight = real(0.0);
-    for (int k = 0; k < kRanked && result.light.probes < kSurfaceProbes; ++k)
+    for (int k = 0; k < kRanked && result.light.probes < surfaceProbes(); ++k)
     {
         int which = largestOf(density);
         if (which < 0) break;
         real most = density[which];
         uint probe = ranked[which];
         density[which] = real(0.0);
+        askForMaps(probe);
+        if (!holdsMaps(probe)) continue;
         vec3 fromProbe = point - vec3(probeHeader(probe).centre);
         if (!isSeenBy(probe, fromProbe, facing)) continue;
         SurfaceTaps taps = surfaceTaps(probe, fromProbe, facing);

@@ -125,6 +125,7 @@ std::vector<LiveKnob> makeLiveKnobs()
             live<std::string>(knobs::areaShadows, SCONCE_AT(frame.areaShadows)),
             live<uint32_t>(knobs::areaSamples, SCONCE_AT(frame.areaSamples), std::optional<uint32_t>(0)),
             live<uint32_t>(knobs::traceEvery, SCONCE_AT(frame.traceEvery)),
+            live<uint32_t>(knobs::surfaceProbes, SCONCE_AT(frame.surfaceProbes)),
             live<float>(knobs::raysBelow, SCONCE_AT(frame.raysBelow)),
             optionalLive(knobs::roughness, SCONCE_AT(frame.roughness)),
             denoiseKnob(),

@@ -32,8 +32,8 @@ auto flagsOf(const IndirectEffects& e)
 /// What a renderer is made for, and can't change.
 bool sameRenderer(const RenderSettings& a, const RenderSettings& b)
 {
-    return a.width == b.width && a.height == b.height && a.traceEvery == b.traceEvery && a.roughness == b.roughness &&
-           flagsOf(a.effects) == flagsOf(b.effects);
+    return a.width == b.width && a.height == b.height && a.traceEvery == b.traceEvery && a.surfaceProbes == b.surfaceProbes &&
+           a.roughness == b.roughness && flagsOf(a.effects) == flagsOf(b.effects);
 }
 
 /// What the scene on the device depends on, light apart: what it keeps of its effects, and what samples of light frames need.

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The programs that race tracers, from end to end on one small light field.
 
-race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS COMMAND
+race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS FLY_THROUGH SOAK COMMAND
 
 sconce_tessellation cuts and bakes a scene; rays of it that sconce_ray_accuracy records have the same answers from sconce_replay.
-sconce_light_response switches the lamp of a live field. sconce_primary_rays looks into one from two places.
+sconce_light_response switches the lamp of a live field. sconce_primary_rays looks into one from two places. sconce_fly_through flies
+through one with room for two of its three probes; sconce_soak draws many frames of it, and of one whose light moves.
 """
 import json
 import pathlib
@@ -31,7 +32,7 @@ def untimed(rows):
 
 
 def main():
-    ray_accuracy, replay, tessellation, light_response, primary_rays, command = sys.argv[1:]
+    ray_accuracy, replay, tessellation, light_response, primary_rays, fly_through, soak, command = sys.argv[1:]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         probes, rays = folder / "p.json", folder / "r.rays"
@@ -68,10 +69,18 @@ def main():
             shares = [mean[part] for part in ("right_1", "too_near", "too_far", "unknown")]
             expect(abs(sum(shares) - 1) < 1e-9 and shares[0] > 0.7 and mean["right_02"] < shares[0], f"{kind}: {mean}")
 
+        flown = json.loads(run(fly_through, "cornell", "--field", field, "--resident", 2, "--frames", 12, "--width", 32, "--height", 24).stdout)
+        expect(len(flown["frames"]) == 12 and flown["most_resident"] <= 2 <= flown["read"], f"two probes of three: {flown}")
+        expect(flown["light"]["least"] > 0.3 and flown["error"]["median"] < 0.5, f"frames without light: {flown}")
+        expect(flown["device_bytes"] < flown["whole_device_bytes"], f"it takes all of the memory: {flown}")
+
         lights, live = folder / "l.json", folder / "live.sconce"
         lights.write_text('{"lights":[{"type":"point","position":[0,1.5,0],"intensity":[1,1,1]}]}', encoding="utf-8")
         small = ["--resolution", 64, "--surface-texels", 26, "--surface-rays", 16]
         run(command, "bake", "cornell", "--lights", lights, "--probes", probes, "--live-links", 8, *small, "-o", live)
+        for what in (["--field", field, "--resident", 2], ["--field", live]):
+            soaked = json.loads(run(soak, "cornell", *what, "--frames", 120, "--side", 16).stdout)
+            expect(soaked["first_frame_again"] is not False and soaked["memory_flat"], f"{what}: {soaked}")
         lines = run(light_response, live, "--frames", 20, "--share", 1, "--share", 0.3).stdout.splitlines()
         rows = [[float(cell) for cell in line.split(";")] for line in lines[1:21]]
         ours, some, blended = ([row[column] for row in rows] for column in (1, 3, 5))

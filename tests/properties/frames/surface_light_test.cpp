@@ -96,6 +96,28 @@ TEST_F(SurfaceLightFrames, ATurningCameraShowsTheChangeOfTheSceneAlone)
         compared, flicker / own, 1.17, 1.05);
 }
 
+// Where one probe lights a look-up instead of two, light stays; seams and what one probe sees coarsely are what it differs by.
+TEST_F(SurfaceLightFrames, OneProbeInsteadOfTwoGivesNearlyTheSameLight)
+{
+    const auto two = drawWith(baked, scene, settings);
+    settings.surfaceProbes = 1;
+    const auto one = drawWith(baked, scene, settings);
+    ASSERT_TRUE(two && one);
+    double squares = 0.0, before = 0.0, after = 0.0;
+    for (size_t i = 0; i < two->diffuseIndirect.size(); ++i)
+    {
+        const vec3 a = one->diffuseIndirect[i], b = two->diffuseIndirect[i];
+        squares += double(glm::dot(a - b, a - b)), before += double(glm::dot(b, b));
+        after += double(glm::dot(a, a));
+    }
+    EXPECT_GT(one->diffuseFrom[4], 0u) << "pixels of one probe";
+    EXPECT_EQ(one->diffuseFrom[5], 0u) << "pixels of two";
+    EXPECT_GT(two->diffuseFrom[5], two->diffuseFrom[4]);
+    expectAtMost("surface light of one probe instead of two: change, root mean square, relative", two->diffuseIndirect.size(),
+                 std::sqrt(squares / before), 0.1);
+    EXPECT_NEAR(std::sqrt(after / before), 1.0, 0.02);
+}
+
 // What a look-up costs; one serves up to four pixels.
 TEST_F(SurfaceLightFrames, APixelIsLitByFewReads)
 {

@@ -125,6 +125,51 @@ TEST(FieldData, BytesByPartAddUpToWhatIsStored)
     }
 }
 
+// Maps of several blocks, and several probes to a block.
+TEST_F(LightFieldFile, MapsComeProbeByProbe)
+{
+    for (const auto& [size, probes] : {std::pair{8u, 3u}, {8u, 900u}, {200u, 5u}})
+    {
+        const FieldData field = smallField(gpu::kChartCube, size, probes);
+        ASSERT_TRUE(saveField(field, file));
+        auto opened = openField(file);
+        ASSERT_TRUE(opened) << opened.error().message;
+        EXPECT_TRUE(opened->field.distance.empty() && opened->field.radiance.empty());
+        EXPECT_EQ(opened->field.surfaceLight, field.surfaceLight);
+        const size_t words = field.info.wordsPerProbe, colors = radianceWordsPerProbe(field.info.chart, size);
+        ASSERT_EQ(opened->maps.distanceWords(), words);
+        ASSERT_EQ(opened->maps.radianceWords(), colors);
+        for (const uint32_t probe : {0u, probes / 2, probes - 1, 1u})
+        {
+            std::vector<uint32_t> distance(words), radiance(colors);
+            const Status status = opened->maps.read(probe, distance, radiance);
+            ASSERT_TRUE(status) << status.error().message;
+            EXPECT_TRUE(std::equal(distance.begin(), distance.end(), field.distance.begin() + std::ptrdiff_t(probe * words))) << probe;
+            EXPECT_TRUE(std::equal(radiance.begin(), radiance.end(), field.radiance.begin() + std::ptrdiff_t(probe * colors))) << probe;
+        }
+    }
+    FieldData blurred = smallField();
+    blurred.radiance.clear();
+    ASSERT_TRUE(saveField(blurred, file));
+    auto opened = openField(file);
+    ASSERT_TRUE(opened);
+    EXPECT_EQ(opened->maps.radianceWords(), 0u);
+    std::vector<uint32_t> distance(opened->maps.distanceWords());
+    EXPECT_TRUE(opened->maps.read(2, distance, {}));
+}
+
+TEST_F(LightFieldFile, MapsThatMayChangeOrAreOctahedralDoNotStream)
+{
+    for (const FieldData& field : {groupedField(), smallField(gpu::kChartOctahedral)})
+    {
+        ASSERT_TRUE(saveField(field, file));
+        const auto opened = openField(file);
+        ASSERT_FALSE(opened);
+        EXPECT_EQ(opened.error().code, ErrorCode::badArgument);
+        EXPECT_NE(opened.error().message.find("can't be read while frames are drawn"), std::string::npos) << opened.error().message;
+    }
+}
+
 TEST_F(LightFieldFile, RoundTripGivesBackEveryField)
 {
     for (const uint32_t chart : {gpu::kChartCube, gpu::kChartOctahedral})

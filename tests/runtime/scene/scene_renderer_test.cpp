@@ -515,6 +515,7 @@ TEST_F(SceneRendererTest, AKnobBeyondItsRangeIsRefusedWithASentence)
     };
     EXPECT_EQ(refusal([](RenderSettings& s) { s.glossyRays = 65; }), "glossyRays is 65; give 1 to 64 rays a pixel");
     EXPECT_EQ(refusal([](RenderSettings& s) { s.glossyRays = 0; }), "glossyRays is 0; give 1 to 64 rays a pixel");
+    EXPECT_EQ(refusal([](RenderSettings& s) { s.surfaceProbes = 3; }), "surfaceProbes is 3; give 1 to 2 probes");
     EXPECT_EQ(refusal([](RenderSettings& s) { s.traceEvery = 3; }), "traceEvery is 3; give 1, 2, 4, 8, 16 pixels");
     EXPECT_EQ(refusal([](RenderSettings& s) { s.raysBelow = NAN; }), "raysBelow is nan; give 0 to 2 roughness");
 }

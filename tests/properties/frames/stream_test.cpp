@@ -1,0 +1,234 @@
+// A light field whose maps come from its file while frames are drawn.
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "runtime/field/field_stream.h"
+#include "scene/builtin_scenes.h"
+#include "tests/properties/frames/frame_test.h"
+#include "tests/properties/hard_cases/hard_case.h"
+#include "tests/support/files.h"
+
+namespace sconce
+{
+namespace
+{
+
+using namespace testing_support;
+
+constexpr uint32_t kSide = 64; // pixels
+
+class Streaming : public FrameTest
+{
+protected:
+    void SetUp() override
+    {
+        scene = *makeBuiltinScene("hall");
+        camera = scene.cameras.front();
+        std::vector<vec3> probes;
+        for (int x = 0; x < 4; ++x)
+            for (int z = 0; z < 4; ++z) probes.push_back(glm::mix(low(), high(), vec3(float(x) / 3.0f, 0.5f, float(z) / 3.0f)));
+        auto made = bakeField(scene, probes);
+        ASSERT_TRUE(made) << made.error().message;
+        baked = std::move(*made);
+        file = folder / "hall.sconce";
+        ASSERT_TRUE(saveField(baked, file));
+        settings = settingsOf(kSide);
+        settings.effects.temporal = false;
+    }
+
+    /// Of where probes may stand.
+    vec3 low() const { return glm::mix(scene.bounds().low, scene.bounds().high, 0.15f); }
+    vec3 high() const { return glm::mix(scene.bounds().low, scene.bounds().high, 0.85f); }
+
+    struct Streamed
+    {
+        LightField field;
+        FieldStream stream;
+        std::unique_ptr<SceneRenderer> renderer;
+    };
+
+    Result<Streamed> open(uint32_t resident, FieldStream::Desc desc = {})
+    {
+        auto opened = openField(file);
+        if (!opened) return opened.error();
+        device.emplace(std::move(*DeviceScene::create(gpu(), scene, opened->field.info)));
+        auto field = makeStreamedField(gpu(), opened->field, std::move(opened->maps), resident);
+        if (!field) return field.error();
+        auto stream = makeFieldStream(gpu(), *field, desc);
+        if (!stream) return stream.error();
+        auto renderer = SceneRenderer::create(gpu(), *device, *field, settings);
+        if (!renderer) return renderer.error();
+        return Streamed{std::move(*field), std::move(*stream), std::move(*renderer)};
+    }
+
+    /// A frame, after what has been read until then.
+    Result<RenderedFrame> step(Streamed& streamed)
+    {
+        if (auto status = gpu().submit([&](VkCommandBuffer cmd) { streamed.stream.record(cmd, camera.eye); }); !status)
+            return status.error();
+        return streamed.renderer->render(camera);
+    }
+
+    /// Frames until nothing more comes.
+    Result<RenderedFrame> settle(Streamed& streamed)
+    {
+        for (int still = 0;;)
+        {
+            auto frame = step(streamed);
+            if (!frame) return frame;
+            const FieldStream::Counts counts = streamed.stream.counts();
+            still =
+                streamed.stream.state().reader->reads() || (counts.missing > 0 && !counts.full && streamed.stream.status()) ? 0 : still + 1;
+            if (still > 4) return frame;
+            std::this_thread::yield();
+        }
+    }
+
+    RenderedFrame whole()
+    {
+        auto frame = drawWith(baked, scene, settings);
+        EXPECT_TRUE(frame);
+        return std::move(*frame);
+    }
+
+    static double meanOf(const std::vector<vec3>& picture)
+    {
+        double sum = 0.0;
+        for (const vec3& c : picture) sum += c.x + c.y + c.z;
+        return sum / (3.0 * double(picture.size()));
+    }
+
+    /// Mean squared error over the squared mean of the truth.
+    static double errorOf(const std::vector<vec3>& picture, const std::vector<vec3>& truth)
+    {
+        double sum = 0.0;
+        for (size_t i = 0; i < truth.size(); ++i) sum += glm::dot(picture[i] - truth[i], picture[i] - truth[i]);
+        return sum / (3.0 * double(truth.size()) * meanOf(truth) * meanOf(truth));
+    }
+
+    TestFolder folder;
+    Scene scene;
+    Camera camera;
+    FieldData baked;
+    std::filesystem::path file;
+    RenderSettings settings;
+    std::optional<DeviceScene> device;
+};
+
+TEST_F(Streaming, AllMapsAreThePictureOfTheWholeField)
+{
+    const RenderedFrame truth = whole();
+    auto streamed = open(uint32_t(baked.probes.size()));
+    ASSERT_TRUE(streamed) << streamed.error().message;
+    const auto first = streamed->renderer->render(camera);
+    ASSERT_TRUE(first);
+    EXPECT_GT(meanOf(first->diffuseIndirect), 0.5 * meanOf(truth.diffuseIndirect)) << "without a map yet, light of the open";
+    const auto frame = settle(*streamed);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const FieldStream::Counts counts = streamed->stream.counts();
+    EXPECT_EQ(counts.missing, 0u);
+    EXPECT_EQ(counts.resident, baked.probes.size());
+    EXPECT_EQ(counts.read, baked.probes.size()) << "each once";
+    EXPECT_EQ(frame->diffuseIndirect, truth.diffuseIndirect);
+    EXPECT_EQ(frame->glossyIndirect, truth.glossyIndirect);
+    EXPECT_TRUE(streamed->stream.status());
+}
+
+// A quarter of the probes: those that the picture asks for most.
+TEST_F(Streaming, MapsThatAreAskedForMakeNearlyTheSamePicture)
+{
+    const RenderedFrame truth = whole();
+    auto streamed = open(uint32_t(baked.probes.size()) / 4);
+    ASSERT_TRUE(streamed);
+    const auto none = streamed->renderer->render(camera);
+    const auto frame = settle(*streamed);
+    ASSERT_TRUE(none && frame);
+    EXPECT_EQ(streamed->stream.counts().resident, baked.probes.size() / 4);
+    const double without = errorOf(none->diffuseIndirect, truth.diffuseIndirect),
+                 with = errorOf(frame->diffuseIndirect, truth.diffuseIndirect);
+    expectAtMost("a quarter of the maps on the device: error of diffuse light, of that without any", kSide * kSide, with / without, 0.25);
+    expectAtMost("a quarter of the maps on the device: mean of diffuse light, relative", kSide * kSide,
+                 std::abs(meanOf(frame->diffuseIndirect) / meanOf(truth.diffuseIndirect) - 1.0), 0.02);
+}
+
+// The camera goes through the hall: no frame is black, the pool is never over its size, and bytes on the device stay.
+TEST_F(Streaming, ACameraThatFliesThroughIsNeverWithoutLight)
+{
+    auto streamed = open(5, {.probesAFrame = 1, .framesInFlight = 2});
+    ASSERT_TRUE(streamed);
+    const auto field = makeLightField(gpu(), baked);
+    const auto full = SceneRenderer::create(gpu(), *device, *field, settings);
+    ASSERT_TRUE(field && full);
+    const uint64_t bytes = gpu().memory().used();
+    double worst = 0.0, darkest = 1.0;
+    for (int i = 0; i < 40; ++i)
+    {
+        const Camera &from = scene.cameras[0], &to = scene.cameras[1];
+        camera.eye = glm::mix(from.eye, to.eye, float(i) / 39.0f);
+        camera.forward = glm::normalize(glm::mix(from.forward, to.forward, float(i) / 39.0f));
+        const auto frame = step(*streamed), truth = (*full)->render(camera);
+        ASSERT_TRUE(frame && truth);
+        EXPECT_LE(streamed->stream.counts().resident, 5u);
+        worst = std::max(worst, errorOf(frame->diffuseIndirect, truth->diffuseIndirect));
+        darkest = std::min(darkest, meanOf(frame->diffuseIndirect) / meanOf(truth->diffuseIndirect));
+    }
+    EXPECT_EQ(gpu().memory().used(), bytes) << "streaming allocates nothing";
+    RecordProperty("worst", std::to_string(worst));
+    EXPECT_GT(darkest, 0.7);
+    EXPECT_GT(streamed->stream.counts().read, 5u) << "the pool has followed";
+}
+
+// A disk goes bad while frames are drawn.
+TEST_F(Streaming, ADamagedBlockIsASentenceAndAPictureWithoutThatProbe)
+{
+    const auto streamed = [&]
+    {
+        auto made = open(uint32_t(baked.probes.size()));
+        EXPECT_TRUE(made);
+        return made;
+    }();
+    // The first block of distances, which is larger than what lies before it.
+    std::string bytes = readText(file);
+    const size_t middle = bytes.size() / 3;
+    std::fstream(file, std::ios::binary | std::ios::in | std::ios::out).seekp(std::streamoff(middle)).write("damage", 6);
+    const auto frame = settle(const_cast<Streamed&>(*streamed));
+    ASSERT_TRUE(frame);
+    const Status status = streamed->stream.status();
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().code, ErrorCode::badInput);
+    EXPECT_NE(status.error().message.find("does not match its checksum"), std::string::npos) << status.error().message;
+    EXPECT_NE(status.error().message.find("The maps of probe "), std::string::npos) << status.error().message;
+    EXPECT_LT(streamed->stream.counts().resident, baked.probes.size());
+    EXPECT_GT(streamed->stream.counts().resident, baked.probes.size() / 2);
+    EXPECT_GT(meanOf(frame->diffuseIndirect), 0.0);
+}
+
+TEST_F(Streaming, WhatCannotStreamIsRefusedWithASentence)
+{
+    const auto said = [](const auto& result) { return result ? std::string("nothing") : result.error().message; };
+    auto opened = openField(file);
+    ASSERT_TRUE(opened);
+    const auto field = makeStreamedField(gpu(), opened->field, std::move(opened->maps), 3);
+    ASSERT_TRUE(field);
+    EXPECT_EQ(said(makeFieldStream(gpu(), *field, {.probesAFrame = 0})), "probesAFrame is 0; give 1 to 64");
+    EXPECT_EQ(said(makeFieldStream(gpu(), *field, {.framesInFlight = 9})), "framesInFlight is 9; give 1 to 8");
+    {
+        const auto one = makeFieldStream(gpu(), *field, {});
+        ASSERT_TRUE(one);
+        EXPECT_NE(said(makeFieldStream(gpu(), *field, {})).find("has a stream"), std::string::npos);
+    }
+    EXPECT_TRUE(makeFieldStream(gpu(), *field, {})) << "the one before is gone";
+    const auto whole = makeLightField(gpu(), baked);
+    ASSERT_TRUE(whole);
+    EXPECT_NE(said(makeFieldStream(gpu(), *whole, {})).find("is whole"), std::string::npos);
+    auto again = openField(file);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(said(makeStreamedField(gpu(), again->field, std::move(again->maps), 17)),
+              "resident is 17; give 1 to the 16 probes of the light field, or 0 for all");
+}
+
+} // namespace
+} // namespace sconce
