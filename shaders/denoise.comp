@@ -12,8 +12,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
 layout(constant_id = kBlendedId) const bool kBlended = false; // the light's a is the number of frames blended into it (temporal.comp)
-layout(set = 1, binding = kFilterFromBinding, rgba32f) readonly uniform image2D noisy;
-layout(set = 1, binding = kFilterToBinding, rgba32f) writeonly uniform image2D smooth_;
+layout(set = 1, binding = kFilterFromBinding, rgba16f) readonly uniform image2D noisy;
+layout(set = 1, binding = kFilterToBinding, rgba16f) writeonly uniform image2D smooth_;
 layout(scalar, push_constant) uniform Push { DenoisePush push; };
 
 const float kHat[2] = float[](1.0 / 2.0, 1.0 / 4.0);
@@ -49,5 +49,5 @@ void main()
             weights += weight;
         }
     if (kTerm == kTermGlossy) sum *= tintOf(p);
-    imageStore(smooth_, at, vec4(weights > 0.0 ? sum / weights : own.rgb, own.a));
+    imageStore(smooth_, at, storedLight(vec4(weights > 0.0 ? sum / weights : own.rgb, own.a)));
 }

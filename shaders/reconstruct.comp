@@ -10,7 +10,7 @@
 // interpolated as light before the surface's tint, so that a metal's texture stays sharp. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
-layout(set = 1, binding = kFillLightBinding, rgba32f) uniform image2D light; // in place: a pixel is either read or written
+layout(set = 1, binding = kFillLightBinding, rgba16f) uniform image2D light; // in place: a pixel is either read or written
 
 void main()
 {
@@ -34,5 +34,5 @@ void main()
     }
     sum /= weights; // not 0: the pixel would have been traced
     if (kTerm == kTermGlossy) sum.rgb *= tintOf(p);
-    imageStore(light, at, sum);
+    imageStore(light, at, storedLight(sum));
 }

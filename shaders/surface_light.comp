@@ -11,7 +11,7 @@
 // lanes are vectors, few that search would have all wait.
 // Dispatch: see lookups.glsl.
 layout(local_size_x = 64) in;
-layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
+layout(set = 1, binding = kSurfaceDiffuseBinding, rgba16f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
 
 const float kMostOfTexel = 0.5; // of its width, that four pixels of one look-up span
 const float kMostOfSoft = 1.0;  // the same where the sharpest shadows are those of lamps, which are not in it
@@ -59,6 +59,6 @@ void main()
     {
         ivec2 at = pixelOf(lookUp, i);
         vec3 normal = field.surfaceDirections != 0u && lookUp.pixels > 1 ? texelFetch(gNormalRoughness, at, 0).xyz : p.normal;
-        imageStore(diffuse, at, vec4(lightOn(normal, found), float(found.probes)));
+        imageStore(diffuse, at, storedLight(vec4(lightOn(normal, found), float(found.probes))));
     }
 }

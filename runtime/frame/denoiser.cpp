@@ -80,7 +80,7 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
     for (History& history : histories)
     {
         for (const auto& [image, format] :
-             {std::pair{&history.light, VK_FORMAT_R32G32B32A32_SFLOAT}, {&history.points, VK_FORMAT_R32G32_UINT}})
+             {std::pair{&history.light, kLightFormat}, {&history.points, VK_FORMAT_R32_UINT}})
         {
             auto made = makeLightImage(*gpu, format, desc.width, desc.height, "the history of a filter over time");
             if (!made) return made.error();
@@ -189,7 +189,11 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
 
 uint64_t Denoiser::deviceBytes() const
 {
-    return desc.temporal ? uint64_t(desc.width) * desc.height * 2 * (16 + 8) : 0;
+    uint64_t bytes = 0;
+    for (const History& history : histories)
+        for (const GpuImage* image : {&history.light, &history.points})
+            if (*image) bytes += image->bytes();
+    return bytes;
 }
 
 } // namespace sconce

@@ -13,7 +13,7 @@ namespace sconce
 namespace
 {
 
-constexpr size_t kImageBytes = 16; // a pixel of an RGBA32F image
+constexpr size_t kImageBytes = 8; // a pixel of an image of kLightFormat
 
 std::string bytes(size_t count, const char* of)
 {

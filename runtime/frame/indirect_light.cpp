@@ -19,8 +19,6 @@ namespace sconce
 namespace
 {
 
-constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-
 std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc)
 {
     const uint32_t most = gpu.properties.limits.maxImageDimension2D;
@@ -77,12 +75,13 @@ Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Sp
 
 Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
-    if (auto s = makeImage(image, kLightFormat,
-                           term == gpu::kTermMirror    ? "mirrored light"
-                           : term == gpu::kTermDiffuse ? "diffuse light"
-                                                       : "glossy light");
-        !s)
-        return s;
+    if (!image)
+        if (auto s = makeImage(image, kLightFormat,
+                               term == gpu::kTermMirror    ? "mirrored light"
+                               : term == gpu::kTermDiffuse ? "diffuse light"
+                                                           : "glossy light");
+            !s)
+            return s;
     const bool counts = desc.counts && term != gpu::kTermDiffuse; // a pixel's reflections are counted
     if (!counts && !noCounts) // what isn't written is bound all the same, in the format that the shader names
     {
@@ -149,7 +148,7 @@ Status IndirectLight::State::makeLamps()
         {gpu::kTermDiffuse, readsSurfaces() || tracesDiffuse() ? &diffuseImage : nullptr},
         {gpu::kTermRough, &roughImage},
         {gpu::kTermGlossy, &glossyImage},
-        {gpu::kTermMirror, &mirrorImage}};
+        {gpu::kTermMirror, &mirrored()}};
     uint32_t terms = 0;
     const GpuImage* any = nullptr;
     for (const auto& [term, image] : images)
@@ -248,10 +247,11 @@ Status IndirectLight::State::make()
         if (auto s = makeTrace(gpu::kTermDiffuse, diffuseImage, diffusePass, diffuseSet); !s) return s;
         if (auto s = makeFill(gpu::kTermDiffuse, diffuseImage, diffuseFill, diffuseFillSet); !s) return s;
     }
-    if (effects.mirror)
-        if (auto s = makeTrace(gpu::kTermMirror, mirrorImage, mirrorPass, mirrorSet); !s) return s;
+    if (effects.glossy)
+        if (auto s = makeTrace(gpu::kTermGlossy, glossyImage, glossyPass, glossySet); !s) return s;
+    if (effects.mirror) // after the glossy image, which may be its own
+        if (auto s = makeTrace(gpu::kTermMirror, mirrorsInGlossy() ? glossyImage : mirrorImage, mirrorPass, mirrorSet); !s) return s;
     if (!effects.glossy) return success();
-    if (auto s = makeTrace(gpu::kTermGlossy, glossyImage, glossyPass, glossySet); !s) return s;
     if (auto s = makeFill(gpu::kTermGlossy, glossyImage, glossyFill, glossyFillSet); !s) return s;
     if (!effects.denoise) return success();
     if (auto s = makeImage(scratch, kLightFormat, "scratch of the glossy filter"); !s) return s;
@@ -367,7 +367,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     pass(mirrorPass, mirrorSet, "mirror trace", onTiles(gpu::kTermMirror));
-    scan("mirror trace", {&mirrorImage});
+    scan("mirror trace", {&mirrored()});
     if (glossyFill || diffuseFill)
     {
         // Read after write: a fill takes light from the traced pixels about its own, and stores into the same image. One barrier for both
@@ -414,10 +414,9 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 
 uint64_t IndirectLight::State::deviceBytes() const
 {
-    const uint64_t pixels = uint64_t(desc.width) * desc.height;
     uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->buffer().size() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
-        if (*image) bytes += 16 * pixels;
+        if (*image) bytes += image->bytes();
     return bytes + denoiser.deviceBytes();
 }
 
@@ -468,7 +467,7 @@ IndirectLight::Output IndirectLight::glossy() const
 
 IndirectLight::Output IndirectLight::mirror() const
 {
-    return outputOf(owned->mirrorImage);
+    return outputOf(owned->mirrored());
 }
 
 IndirectLight::Output IndirectLight::counts() const
@@ -480,7 +479,7 @@ uint32_t IndirectLight::made() const
 {
     const auto bit = [](const GpuImage& image, uint32_t term) { return image ? 1u << term : 0u; };
     return bit(owned->diffuseImage, gpu::kTermDiffuse) | bit(owned->roughImage, gpu::kTermRough) |
-           bit(owned->glossyImage, gpu::kTermGlossy) | bit(owned->mirrorImage, gpu::kTermMirror);
+           bit(owned->glossyImage, gpu::kTermGlossy) | bit(owned->mirrored(), gpu::kTermMirror);
 }
 
 uint64_t IndirectLight::deviceBytes() const

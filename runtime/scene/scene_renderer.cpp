@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // what is shown and written, of any brightness
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
 
@@ -113,17 +113,19 @@ Status SceneRenderer::make()
     if (auto s = image(depth, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth"); !s) return s;
     for (auto [target, format, what] : {std::tuple{&normalRoughness, kGBufferFormat, "normals"},
                                         {&baseColorMetallic, kGBufferFormat, "base colour"},
-                                        {&emission, kLightFormat, "emission"}, // may be beyond the 65,504 of 16 bits
+                                        {&emission, kLightFormat, "emission"},
                                         {&geometricNormal, kGBufferFormat, "geometric normals"}})
         if (auto s = image(*target, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
-    for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
-                                        {&beauty, "picture", true},
-                                        {&scratch, "scratch of the diffuse filter", effects.diffuse && !indirect->state().readsSurfaces()},
-                                        {&diffuseLayer, "diffuse layer", settings.layers && effects.diffuse},
-                                        {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
+    const bool filtersDiffuse = effects.diffuse && !indirect->state().readsSurfaces();
+    for (auto [target, format, what, wanted] :
+         {std::tuple{&direct, kLightFormat, "direct light", true},
+          {&beauty, kPictureFormat, "picture", true},
+          {&scratch, kLightFormat, "scratch of the diffuse filter", filtersDiffuse && !indirect->state().scratch},
+          {&diffuseLayer, kLightFormat, "diffuse layer", settings.layers && effects.diffuse},
+          {&glossyLayer, kLightFormat, "glossy layer", settings.layers && (effects.rough || rays)}})
     {
         if (!wanted) continue;
-        auto made = makeLightImage(gpu, kLightFormat, settings.width, settings.height, what);
+        auto made = makeLightImage(gpu, format, settings.width, settings.height, what);
         if (!made) return made.error();
         *target = std::move(*made);
     }
@@ -198,7 +200,7 @@ Status SceneRenderer::makeDiffuse()
     }
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
                               settings.width, settings.height};
-    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, scratch);
+    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, filterScratch());
     if (!made) return made.error();
     denoiser = std::move(*made);
     denoiser.setInputs(gBuffer);
@@ -214,12 +216,12 @@ Status SceneRenderer::makeCompose()
         const GpuImage& image;
         bool made;
     };
-    // What is not made is not read: anything may be bound in its place.
+    // What is not made is not read: anything of the format may be bound in its place.
     const Shown images[] = {{gpu::kComposeDirectBinding, direct, true},
                             {gpu::kComposeDiffuseBinding, indirect->state().diffuseImage, effects.diffuse},
                             {gpu::kComposeRoughBinding, indirect->state().roughImage, effects.rough},
                             {gpu::kComposeGlossyBinding, indirect->state().glossyImage, effects.glossy},
-                            {gpu::kComposeMirrorBinding, indirect->state().mirrorImage, effects.mirror},
+                            {gpu::kComposeMirrorBinding, indirect->state().mirrored(), effects.mirror},
                             {gpu::kComposeBeautyBinding, beauty, true},
                             {gpu::kComposeDiffuseLayerBinding, diffuseLayer, bool(diffuseLayer)},
                             {gpu::kComposeGlossyLayerBinding, glossyLayer, bool(glossyLayer)}};
@@ -234,7 +236,7 @@ Status SceneRenderer::makeCompose()
     const ShaderConstant constants[] = {
         {gpu::kMadeId, made}, {gpu::kDiffuseLayerId, diffuseLayer ? 1u : 0u}, {gpu::kGlossyLayerId, glossyLayer ? 1u : 0u}};
     if (auto s = makePass(composePass, composeSet, compose_comp, bindings, 0, scene.layout(), constants); !s) return s;
-    for (const Shown& shown : images) composeSet.write(shown.binding, (shown.made ? shown.image : beauty).view(), VK_IMAGE_LAYOUT_GENERAL);
+    for (const Shown& shown : images) composeSet.write(shown.binding, (shown.made ? shown.image : direct).view(), VK_IMAGE_LAYOUT_GENERAL);
     return success();
 }
 
@@ -417,7 +419,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         denoiser.record(cmd, scene.descriptorSet());
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "diffuse denoise", indirect->state().diffuseImage);
-        scanImage(gpu, cmd, "diffuse denoise", scratch);
+        scanImage(gpu, cmd, "diffuse denoise", filterScratch());
     }
     begin(composePass, composeSet, "compose");
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
@@ -433,8 +435,8 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, VkImageLayout layout)
 {
     const size_t pixels = size_t(settings.width) * settings.height;
-    const bool isDepth = image.desc().format == kDepthFormat, isHalf = image.desc().format == kGBufferFormat;
-    const size_t pixelBytes = isDepth ? 4 : (isHalf ? 8 : 16);
+    const bool isDepth = image.desc().format == kDepthFormat, isHalf = image.desc().format == VK_FORMAT_R16G16B16A16_SFLOAT;
+    const size_t pixelBytes = texelBytes(image.desc().format);
     auto buffer = gpu.makeBuffer(pixels * pixelBytes, 0, MemoryUse::readback, "picture read back");
     if (!buffer) return buffer.error();
     auto status = gpu.submit(
@@ -477,8 +479,7 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
 
 uint64_t SceneRenderer::deviceBytes() const
 {
-    const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    return indirect->deviceBytes() + (scratch ? 16 * pixels : 0) + denoiser.deviceBytes();
+    return indirect->deviceBytes() + (scratch ? scratch.bytes() : 0) + denoiser.deviceBytes();
 }
 
 Result<std::vector<GpuTimer::Scope>> SceneRenderer::draw(const Camera& camera, uint32_t index)
@@ -537,8 +538,12 @@ Result<RenderedFrame> SceneRenderer::read()
         return success();
     };
     constexpr VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL, read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    if (auto s = colors(frame.beauty, beauty, general); !s) return s.error();
-    if (auto s = colors(frame.direct, direct, general); !s) return s.error();
+    std::vector<float> whole;
+    if (auto s = colors(frame.beauty, beauty, general, &whole); !s) return s.error();
+    frame.clamped = size_t(std::ranges::count(whole, 0.0f));
+    std::vector<float> scales; // of storedBright()
+    if (auto s = colors(frame.direct, direct, general, &scales); !s) return s.error();
+    for (size_t i = 0; i < pixels; ++i) frame.direct[i] *= scales[i];
     frame.diffuseIndirect.assign(pixels, vec3(0.0f));
     frame.glossyIndirect.assign(pixels, vec3(0.0f));
     frame.counts.assign(pixels, glm::uvec4(gpu::kNoProbe, 0, 0, 0));

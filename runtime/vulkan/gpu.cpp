@@ -24,6 +24,27 @@ bool isDepth(VkFormat format)
 
 } // namespace
 
+uint32_t texelBytes(VkFormat format)
+{
+    switch (format)
+    {
+    case VK_FORMAT_D16_UNORM:
+        return 2;
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R8G8B8A8_UNORM:
+        return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+        return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+    case VK_FORMAT_R32G32B32A32_UINT:
+        return 16;
+    default:
+        assert(!"a format that no frame is made of");
+        return 0;
+    }
+}
+
 VkImageAspectFlags GpuImage::aspect() const
 {
     return isDepth(made.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
