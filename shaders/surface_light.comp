@@ -4,6 +4,8 @@
 #include "gbuffer_read.glsl"
 #define SCONCE_LEAVES_LOOK_UPS
 #include "tiles.glsl"
+#include "packed_pixel.glsl"
+#define SCONCE_READS_PIXEL readPacked
 #include "lookups.glsl"
 
 // Diffuse light of all sources but the host's own, read from the surface light of the probes that see the pixel. No sample, no filter. Rough
@@ -58,7 +60,7 @@ void main()
     for (int i = 0; i < lookUp.pixels; ++i)
     {
         ivec2 at = pixelOf(lookUp, i);
-        vec3 normal = field.surfaceDirections != 0u && lookUp.pixels > 1 ? texelFetch(gNormalRoughness, at, 0).xyz : p.normal;
+        vec3 normal = field.surfaceDirections != 0u && lookUp.pixels > 1 ? readPacked(at).normal : p.normal;
         imageStore(diffuse, at, storedLight(vec4(lightOn(normal, found), float(found.probes))));
     }
 }

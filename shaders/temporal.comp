@@ -3,8 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
-#include "shared/texel.h"
-#include "shared/chart.h"
+#include "packed_pixel.glsl"
 #include "tiles.glsl"
 
 // Blends a term's light with what the frame before had for the same point (McGuire et al. 2017, section 5.1, reproject likewise; Karis 2014,
@@ -66,14 +65,15 @@ void main()
 {
     ivec2 at;
     if (!findPixel(kTerm, at)) return;
-    Pixel p = readPixel(at);
-    if ((termsOf(p) & (1u << kTerm)) == 0u) return;
+    uint terms;
+    Pixel p = readPacked(at, terms);
+    if ((terms & (1u << kTerm)) == 0u) return;
     vec4 own = imageLoad(light, at);
     vec4 past = vec4(0.0);
     bool sharp = kTerm == kTermGlossy && p.brdf.roughness < 0.25;
     if (frame.follows != 0u)
     {
-        vec3 seen = sharp ? p.position - own.a * p.view : p.position; // the hit, mirrored: on the line of sight, behind the surface
+        vec3 seen = sharp ? p.position - own.a * normalize(frame.eye - p.position) : p.position; // the hit, mirrored: on the line of sight, behind the surface
         vec4 clip = frame.clipFromWorldBefore * vec4(seen, 1.0);
         if (clip.w > 0.0)
             past = history((0.5 * clip.xy / clip.w + 0.5) * vec2(frame.size), distance(p.position, frame.eyeBefore), p.normal);

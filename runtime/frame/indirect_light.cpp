@@ -93,18 +93,21 @@ Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline&
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = shaders.glossy.empty() ? Spirv(trace_glossy_comp) : shaders.glossy;
     return makePass(pipeline, set, shader,
-                    {{gpu::kTraceLightBinding, &image}, {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts}},
+                    {{gpu::kTraceLightBinding, &image},
+                     {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts},
+                     {gpu::kPackedBinding, &tileList->packedPixels()}},
                     {{gpu::kTermId, term},
                      {gpu::kCountId, counts ? 1u : 0u},
                      {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()},
+                     {gpu::kUntintedId, untinted(term)},
                      {gpu::kMovingId, moving ? 1u : 0u}});
 }
 
 Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
     if (desc.traceEvery == 1) return success();
-    return makePass(pipeline, set, reconstruct_comp, {{gpu::kFillLightBinding, &image}},
-                    {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}});
+    return makePass(pipeline, set, reconstruct_comp, {{gpu::kFillLightBinding, &image}, {gpu::kPackedBinding, &tileList->packedPixels()}},
+                    {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}, {gpu::kUntintedId, untinted(term)}});
 }
 
 /// Of the pass that reads light at surfaces, whose light scales rough reflections, too, and of the one that adds lamps; of what the first
@@ -236,7 +239,7 @@ Status IndirectLight::State::make()
     if (readsSurfaces())
         for (uint32_t isRest : {0u, 1u})
             if (auto s = makePass(isRest ? surfaceRestPass : surfacePass, surfaceSet, surface_light_comp,
-                                  {{gpu::kSurfaceDiffuseBinding, &diffuseImage}},
+                                  {{gpu::kSurfaceDiffuseBinding, &diffuseImage}, {gpu::kPackedBinding, &tileList->packedPixels()}},
                                   {{gpu::kLookUpListId, isRest}, {gpu::kLookUpRestId, 1}, {gpu::kIsRestId, isRest}});
                 !s)
                 return s;
@@ -414,7 +417,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 
 uint64_t IndirectLight::State::deviceBytes() const
 {
-    uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->buffer().size() : 0);
+    uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->deviceBytes() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += image->bytes();
     return bytes + denoiser.deviceBytes();

@@ -67,6 +67,7 @@ private:
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
     uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
+    uint32_t untinted(uint32_t term) const { return term == gpu::kTermGlossy && desc.effects.denoise ? 1 : 0; } // gpu::kUntintedId
     bool mirrorsInGlossy() const { return desc.effects.tiles && desc.effects.glossy && desc.effects.mirror; }
     bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
     bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }

@@ -26,11 +26,16 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& des
         gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
     made.lists = std::move(*lists);
-    const DescriptorSet::Binding bindings[] = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto packed = makeLightImage(gpu, VK_FORMAT_R32G32_UINT, desc.width, desc.height, "packed pixels");
+    if (!packed) return packed.error();
+    made.packed = std::move(*packed);
+    const DescriptorSet::Binding bindings[] = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                               {gpu::kPackedBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
     auto set = makeFrameSet(gpu, frame, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
     made.set.write(gpu::kTileBinding, made.lists);
+    made.set.write(gpu::kPackedBinding, made.packed.view(), VK_IMAGE_LAYOUT_GENERAL);
     const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
     std::vector<ShaderConstant> constants = {{gpu::kEveryLogId, desc.everyLog}, made.constant()};
     for (uint32_t list = 0; list < desc.lookUps.size(); ++list)

@@ -35,6 +35,7 @@ uint32_t texelBytes(VkFormat format)
     case VK_FORMAT_R8G8B8A8_UNORM:
         return 4;
     case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R32G32_UINT:
         return 8;
     case VK_FORMAT_R32G32B32A32_SFLOAT:
     case VK_FORMAT_R32G32B32A32_UINT:
