@@ -83,8 +83,7 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
 {
     for (History& history : histories)
     {
-        for (const auto& [image, format] :
-             {std::pair{&history.light, kLightFormat}, {&history.points, VK_FORMAT_R32_UINT}})
+        for (const auto& [image, format] : {std::pair{&history.light, kLightFormat}, {&history.points, VK_FORMAT_R32_UINT}})
         {
             auto made = makeLightImage(*gpu, format, desc.width, desc.height, "the history of a filter over time");
             if (!made) return made.error();

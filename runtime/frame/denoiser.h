@@ -20,8 +20,8 @@ public:
         const TileList* tiles = nullptr; // needed
         uint32_t width = 0, height = 0;
     };
-    /// @param light    of kLightFormat, in VK_IMAGE_LAYOUT_GENERAL, noisy; filtered in place. Of the glossy term before the surface's tint (gpu::kUntintedId), which it
-    ///                 has in the end
+    /// @param light    of kLightFormat, in VK_IMAGE_LAYOUT_GENERAL, noisy; filtered in place. The glossy term is given before its surfaces'
+    ///                 tint (gpu::kUntintedId), and has it in the end
     /// @param scratch  another one
     static Result<Denoiser> create(Gpu& gpu, const Desc& desc, const Buffer& frame, const GpuImage& light, const GpuImage& scratch);
     void setInputs(const FrameInputs& inputs);

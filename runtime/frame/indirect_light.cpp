@@ -298,11 +298,14 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 {
     assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    // Write after read and after write: view, counts and images are the same ones each frame. The frame before may still read its outputs
-    // in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for.
+    // Write after read and after write: view, lists, counts and images are the same ones each frame. The frame before may still read its
+    // outputs in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for. Once for all that a frame
+    // writes anew.
     memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT);
+    // Recorded, not written by the host: the frame before may still run with its own view.
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
+    if (tileList) tileList->clear(cmd);
     if (moving) gpu->vk.CmdUpdateBuffer(cmd, moving.handle(), 0, shapeBytes.size(), shapeBytes.data());
     // Traces write where rays start; the other pixels must not keep the counts of the frame before.
     if (countImage)
@@ -311,7 +314,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
     }
-    // Every pass reads the view; traces write over the cleared counts.
+    // Every pass reads the view; classification counts up by atomics from the cleared lists; traces write over the cleared counts.
     memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
                   VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const auto timed = [&](const char* name, auto&& work)

@@ -29,6 +29,8 @@ public:
     /// @param frame  the gpu::FrameView, a uniform buffer
     static Result<TileList> create(Gpu& gpu, const Buffer& frame, const Desc& desc);
     void setInputs(const FrameInputs& inputs) { writeInputs(set, inputs); }
+    /// Empties the lists, by a transfer: the caller orders it after the frame before, which ran by them, and before record().
+    void clear(VkCommandBuffer cmd) const;
     /// Ends with the barrier that lets passes run by the lists.
     void record(VkCommandBuffer cmd) const;
     /// Dispatches the bound pass over a list's tiles, or over the whole picture.
@@ -38,7 +40,7 @@ public:
     void dispatchLookUps(VkCommandBuffer cmd, uint32_t list) const;
     ShaderConstant constant() const { return {gpu::kTiledId, desc.tiled ? 1u : 0u}; } // of passes that include shaders/tiles.glsl
 
-    const Buffer& buffer() const { return lists; }         // their gpu::kTileBinding
+    const Buffer& buffer() const { return lists; }          // their gpu::kTileBinding
     const GpuImage& packedPixels() const { return packed; } // their gpu::kPackedBinding
     uint64_t deviceBytes() const { return lists.size() + packed.bytes(); }
     explicit operator bool() const { return bool(pipeline); }

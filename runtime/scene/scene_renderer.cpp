@@ -73,7 +73,7 @@ Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
                                uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const ShaderConstant> constants,
                                VkDescriptorSetLayout third)
 {
-    auto made = makeFrameSet(gpu, frameBlock, extra);
+    auto made = makeFrameSet(gpu, indirect->state().frame, extra);
     if (!made) return made.error();
     set = std::move(*made);
     writeInputs(set, gBuffer);
@@ -129,10 +129,6 @@ Status SceneRenderer::make()
         if (!made) return made.error();
         *target = std::move(*made);
     }
-    // Before the passes: makePass() writes the frame view and the G-buffer into the set of each.
-    auto block = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
-    if (!block) return block.error();
-    frameBlock = std::move(*block);
     gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     // Once: the images of the G-buffer stay the same in all frames.
     indirect->setInputs(gBuffer);
@@ -200,7 +196,7 @@ Status SceneRenderer::makeDiffuse()
     }
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
                               settings.width, settings.height};
-    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, filterScratch());
+    auto made = Denoiser::create(gpu, desc, indirect->state().frame, indirect->state().diffuseImage, filterScratch());
     if (!made) return made.error();
     denoiser = std::move(*made);
     denoiser.setInputs(gBuffer);
@@ -283,13 +279,15 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
 {
     const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &emission, &geometricNormal};
     VkRenderingAttachmentInfo colors[4]{};
+    // Write after read: the frame before, or a copy of it to the host, may still read them. From undefined: every pixel is cleared, so that
+    // nothing needs to be kept. No access of the past: after reads alone, a stage to wait for is all.
+    constexpr VkPipelineStageFlags2 readers =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    transition(gpu, cmd, targets,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, readers,
+                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
     for (int i = 0; i < 4; ++i)
     {
-        // Write after read: the frame before, or a copy of it to the host, may still read them, by whatever stage. From undefined: every
-        // pixel is cleared, so that nothing needs to be kept.
-        transition(gpu, cmd, *targets[i],
-                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
         colors[i].sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
         colors[i].imageView = targets[i]->view();
         colors[i].imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -299,8 +297,7 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     constexpr VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
     // Depth likewise; its tests read it, too.
     transition(gpu, cmd, depth,
-               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, tests,
-                VK_ACCESS_2_MEMORY_READ_BIT,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, readers, tests, 0,
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
     VkRenderingAttachmentInfo depthInfo{};
     depthInfo.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
@@ -331,11 +328,10 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     scene.mesh().draw(cmd, draws.masked);
     gpu.vk.CmdEndRendering(cmd);
     constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    for (const GpuImage* target : targets)
-        // Read after write: compute passes alone read the G-buffer.
-        transition(gpu, cmd, *target,
-                   {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    // Read after write: compute passes alone read the G-buffer.
+    transition(gpu, cmd, targets,
+               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
     // The same for depth, whichever tests wrote it.
     transition(gpu, cmd, depth,
                {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, read, tests, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
@@ -371,16 +367,10 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     for (const GpuImage* image : {&depth, &normalRoughness, &baseColorMetallic, &emission, &geometricNormal})
         scanImage(gpu, cmd, "G-buffer", *image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
-    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    // Write after read and after write: passes of the frame before may still read its view, and write or read the pictures that this frame
-    // writes.
-    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
-    // Recorded, not written by the host: the frame before may still be running with its own view.
-    gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
-    // Read after write: the view, which is all that the update wrote.
-    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
+    // Begins by waiting for the frame before, so that nothing of this one, but the G-buffer, may stand ahead of it.
+    indirect->record(cmd, view, timer);
 
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     // Workgroups of direct light and composition are 8 x 8 pixels; these passes drop what lies beyond the edge.
     const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
     if (timer) timer->begin(cmd, "direct light");
@@ -390,9 +380,6 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
     if (timer) timer->end(cmd);
     scanImage(gpu, cmd, "direct light", direct);
-
-    // Before the area lights, which add to the diffuse term that this writes.
-    indirect->record(cmd, view, timer);
 
     const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, bool withField = false)
     {

@@ -48,7 +48,7 @@ struct RenderedFrame
 /// made.
 struct FramePictures
 {
-    const GpuImage *beauty; // RGBA32F, radiance to the eye; as the next three
+    const GpuImage* beauty;                              // RGBA32F, radiance to the eye; as the next three
     const GpuImage *direct, *diffuseLayer, *glossyLayer; // RGBA16F; direct light is storedBright() of shaders/stored_light.glsl
     const GpuImage *normalRoughness, *baseColorMetallic, *depth;
     const GpuImage* counts; // RGBA32UI, as RenderedFrame::counts
@@ -108,7 +108,6 @@ private:
     Denoiser denoiser;
     std::optional<Camera> before; // the camera of the frame before
     uint32_t changing = 0;        // frames to come of changed light
-    Buffer frameBlock;
     FrameInputs gBuffer;
     std::optional<IndirectLight> indirect;
     SceneDraws draws;

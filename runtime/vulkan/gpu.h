@@ -163,5 +163,7 @@ struct ImageTransition
     VkAccessFlags2 written = 0, used = 0;
 };
 void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, const ImageTransition& change);
+/// The same of several images, at most 8, by one barrier.
+void transition(const Gpu& gpu, VkCommandBuffer cmd, std::span<const GpuImage* const> images, const ImageTransition& change);
 
 } // namespace sconce
