@@ -5,8 +5,9 @@
 /// @param rounding  0.5: to the nearest; random in [0,1): right in the mean, so that steps finer than a half float's aren't lost
 vec4 storedLight(vec4 light, float rounding)
 {
-    uvec4 bits = floatBitsToUint(light) + uint(rounding * 8192.0); // 13 bits more than half floats have
-    return min(uintBitsToFloat(bits & 0xffffe000u), vec4(kMostLight));
+    const vec4 most = vec4(kMostLight);
+    vec4 rounded = uintBitsToFloat((floatBitsToUint(light) + uint(rounding * 8192.0)) & 0xffffe000u); // 13 bits more than half floats have
+    return mix(rounded, most, greaterThan(light, most)); // not min(): NaN must stay what a scan for it finds
 }
 vec4 storedLight(vec4 light) { return storedLight(light, 0.5); }
 
