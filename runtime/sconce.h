@@ -305,14 +305,14 @@ public:
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; composeIndirect() there
-    // makes a picture of them. RGBA32F.
+    // makes a picture of them. RGBA16F; light beyond gpu::kMostLight, 65,504, is stored as that.
     uint32_t made() const;  // bits 1 << gpu::kTermDiffuse... of the terms whose images aren't null
     Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it
                             // is read from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or
                             // sky. a, of surface light: SurfaceLight::probes, what it is from
     Output rough() const;   // rgb radiance reflected to the eye, BRDF included; as the next two
     Output glossy() const;
-    Output mirror() const;
+    Output mirror() const; // may be the image of glossy(): no pixel has both
     Output counts() const; // RGBA32UI: probe, hand-offs, reads, unknown rays; of the traced terms
     uint64_t deviceBytes() const;
 

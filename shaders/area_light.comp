@@ -15,7 +15,7 @@
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = kAreaNormalBinding) uniform texture2D gGeometricNormal;
-layout(set = 1, binding = kAreaDiffuseBinding, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
+layout(set = 1, binding = kAreaDiffuseBinding, rgba16f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
 layout(scalar, push_constant) uniform Push { AreaPush push; };
 
 #ifdef SCONCE_FIELD_SHADOWS
@@ -65,5 +65,5 @@ void main()
     vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
     vec3 irradiance = someLights(kLightEmitter, p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
                       someLights(kLightSky, p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
-    imageStore(diffuse, at, vec4(light + irradiance / kBrdfPi, 1.0));
+    imageStore(diffuse, at, storedLight(vec4(light + irradiance / kBrdfPi, 1.0)));
 }

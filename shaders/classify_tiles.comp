@@ -3,10 +3,12 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
+#define SCONCE_PACKS
+#include "packed_pixel.glsl"
 #include "look_up_rows.glsl"
 
 // Lists the tiles in which some pixel has a term, for each term, and keeps each pixel's terms for the filters,
-// which ask them of every neighbour; and lists what passes look up. The order of a list varies from run to run; no pixel depends on it.
+// which ask them of every neighbour; packs what filters ask of a pixel; and lists what passes look up. The order of a list varies from run to run; no pixel depends on it.
 // All runs start as (kTileRow, 0, 1, 0). Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTiledId) const bool kTiled = true; // false: look-ups of every pixel, needed or not
@@ -104,6 +106,7 @@ void main()
         terms = termsOf(p) | (p.surface ? kIsSurface : 0u);
         pixelPlace[invocation] = vec4(p.position, p.brdf.roughness);
         pixelNormal[invocation] = p.normal;
+        imageStore(packedPixels, at, uvec4(packedOf(p, terms & (kIsSurface - 1u)), 0u, 0u));
         if (terms != 0u)
         {
             atomicOr(tileTerms, terms & (kIsSurface - 1u));

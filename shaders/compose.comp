@@ -10,29 +10,29 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kMadeId) const uint kMade = 15u;     // bit i: term i is made
 layout(constant_id = kDiffuseLayerId) const bool kDiffuseLayer = true; // write the term's share of the picture, too
 layout(constant_id = kGlossyLayerId) const bool kGlossyLayer = true;
-layout(set = 1, binding = kComposeDirectBinding, rgba32f) readonly uniform image2D direct;
-layout(set = 1, binding = kComposeDiffuseBinding, rgba32f) readonly uniform image2D diffuse; // cosine-weighted mean of the arriving radiance
-layout(set = 1, binding = kComposeRoughBinding, rgba32f) readonly uniform image2D rough;   // these three: radiance reflected to the eye
-layout(set = 1, binding = kComposeGlossyBinding, rgba32f) readonly uniform image2D glossy;
-layout(set = 1, binding = kComposeMirrorBinding, rgba32f) readonly uniform image2D mirror;
-layout(set = 1, binding = kComposeBeautyBinding, rgba32f) writeonly uniform image2D beauty;
-layout(set = 1, binding = kComposeDiffuseLayerBinding, rgba32f) writeonly uniform image2D diffuseLayer; // rgb radiance to the eye
-layout(set = 1, binding = kComposeGlossyLayerBinding, rgba32f) writeonly uniform image2D glossyLayer;  // of all reflections
+layout(set = 1, binding = kComposeDirectBinding, rgba16f) readonly uniform image2D direct; // storedBright()
+layout(set = 1, binding = kComposeDiffuseBinding, rgba16f) readonly uniform image2D diffuse; // cosine-weighted mean of the arriving radiance
+layout(set = 1, binding = kComposeRoughBinding, rgba16f) readonly uniform image2D rough;   // these three: radiance reflected to the eye
+layout(set = 1, binding = kComposeGlossyBinding, rgba16f) readonly uniform image2D glossy;
+layout(set = 1, binding = kComposeMirrorBinding, rgba16f) readonly uniform image2D mirror;
+layout(set = 1, binding = kComposeBeautyBinding, rgba32f) writeonly uniform image2D beauty; // a: 0 where a term was brighter than its image holds
+layout(set = 1, binding = kComposeDiffuseLayerBinding, rgba16f) writeonly uniform image2D diffuseLayer; // rgb radiance to the eye
+layout(set = 1, binding = kComposeGlossyLayerBinding, rgba16f) writeonly uniform image2D glossyLayer;  // of all reflections
 
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(at, ivec2(frame.size)))) return;
-    vec3 light = imageLoad(direct, at).rgb;
+    vec3 light = brightLight(imageLoad(direct, at));
     Pixel p = readPixel(at);
     uint terms = termsOf(p) & kMade;
     const vec3 none = vec3(0.0);
+    vec3 d = (terms & (1u << kTermDiffuse)) != 0u ? imageLoad(diffuse, at).rgb : none, r = (terms & (1u << kTermRough)) != 0u ? imageLoad(rough, at).rgb : none,
+         g = (terms & (1u << kTermGlossy)) != 0u ? imageLoad(glossy, at).rgb : none, m = (terms & (1u << kTermMirror)) != 0u ? imageLoad(mirror, at).rgb : none;
     IndirectSent sent = IndirectSent(none, none);
-    if (terms != 0u)
-        sent = composeIndirect(p.brdf, dot(p.normal, p.view), frame.raysBelow, terms,
-                               (terms & (1u << kTermDiffuse)) != 0u ? imageLoad(diffuse, at).rgb : none, (terms & (1u << kTermRough)) != 0u ? imageLoad(rough, at).rgb : none,
-                               (terms & (1u << kTermGlossy)) != 0u ? imageLoad(glossy, at).rgb : none, (terms & (1u << kTermMirror)) != 0u ? imageLoad(mirror, at).rgb : none);
-    imageStore(beauty, at, vec4(light + sent.scattered + sent.reflected, 1.0));
-    if (kDiffuseLayer) imageStore(diffuseLayer, at, vec4(sent.scattered, 1.0));
-    if (kGlossyLayer) imageStore(glossyLayer, at, vec4(sent.reflected, 1.0));
+    if (terms != 0u) sent = composeIndirect(p.brdf, dot(p.normal, p.view), frame.raysBelow, terms, d, r, g, m);
+    bool whole = all(lessThan(max(max(d, r), max(g, m)), vec3(kMostLight)));
+    imageStore(beauty, at, vec4(light + sent.scattered + sent.reflected, whole ? 1.0 : 0.0));
+    if (kDiffuseLayer) imageStore(diffuseLayer, at, storedLight(vec4(sent.scattered, 1.0)));
+    if (kGlossyLayer) imageStore(glossyLayer, at, storedLight(vec4(sent.reflected, 1.0)));
 }

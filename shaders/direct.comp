@@ -9,7 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = kDirectEmissionBinding) uniform texture2D gEmission;
 layout(set = 1, binding = kDirectNormalBinding) uniform texture2D gGeometricNormal;
-layout(set = 1, binding = kDirectLightBinding, rgba32f) writeonly uniform image2D direct; // rgb radiance to the eye
+layout(set = 1, binding = kDirectLightBinding, rgba16f) writeonly uniform image2D direct; // radiance to the eye, storedBright()
 layout(scalar, push_constant) uniform Push { DirectPush push; };
 
 void main()
@@ -20,7 +20,7 @@ void main()
     vec3 light = push.sky;
     if (p.surface)
     {
-        light = texelFetch(gEmission, at, 0).rgb;
+        light = brightLight(texelFetch(gEmission, at, 0));
         vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
         vec3 point = (p.position - push.origin) / push.scale;
         BrdfLobes lobes = lobesAt(p.brdf, dot(p.normal, p.view));
@@ -31,5 +31,5 @@ void main()
             light += s.irradiance * max(dot(p.normal, s.toLight), 0.0) * (f.diffuse + f.specular);
         }
     }
-    imageStore(direct, at, vec4(light, 1.0));
+    imageStore(direct, at, storedBright(light));
 }

@@ -7,8 +7,8 @@ layout(constant_id = kGatherDiffuseId) const bool kDiffuse = true; // make the d
 layout(constant_id = kGatherRoughId) const bool kRough = true;   // make the rough reflections
 layout(constant_id = kByPatchesId) const bool kByPatches = false; // diffuse light from one probe's patches
 layout(constant_id = kBySurfaceId) const bool kBySurface = false; // `diffuse` has been made, from surface light
-layout(set = 1, binding = kGatherDiffuseBinding, rgba32f) uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
-layout(set = 1, binding = kGatherRoughBinding, rgba32f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
+layout(set = 1, binding = kGatherDiffuseBinding, rgba16f) uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo)
+layout(set = 1, binding = kGatherRoughBinding, rgba16f) writeonly uniform image2D rough;   // rgb: radiance reflected to the eye
 
 /// The probes with the largest weights, in order, and the largest weight of the others.
 struct Heaviest
@@ -103,7 +103,7 @@ void main()
         arriving = weights * patchIrradiance(drawn, point - probeHeader(drawn).centre, p.normal);
     if (wantDiffuse)
         for (int i = 0; i < lookUp.pixels; ++i)
-            imageStore(diffuse, pixelOf(lookUp, i), vec4(kByPatches ? arriving / weights : blendedLight(arriving / weights), 1.0));
+            imageStore(diffuse, pixelOf(lookUp, i), storedLight(vec4(kByPatches ? arriving / weights : blendedLight(arriving / weights), 1.0)));
     if (!wantRough) return;
     InLobe inLobe = radianceInLobe(heaviest, point, p.normal, reflectedLobe(p.normal, p.view, ggxAlpha(p.brdf.roughness)));
     for (int i = 0; i < lookUp.pixels; ++i)
@@ -112,6 +112,6 @@ void main()
         Pixel own = readPixel(at);
         vec3 share = kBySurface ? shareOfSurface(imageLoad(diffuse, at).rgb, inLobe.above) : vec3(1.0);
         // The lobe's mean radiance times what it reflects of white light (Karis 2013, "Real Shading in Unreal Engine 4").
-        imageStore(rough, at, vec4(inLobe.radiance * share * specularColor(lobesAt(own.brdf, dot(own.normal, own.view))), 1.0));
+        imageStore(rough, at, storedLight(vec4(inLobe.radiance * share * specularColor(lobesAt(own.brdf, dot(own.normal, own.view))), 1.0)));
     }
 }

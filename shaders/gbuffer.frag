@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "material.glsl"
+#include "stored_light.glsl"
 
 // See gbuffer.vert. Normals are turned to the viewer's side: every surface has two.
 layout(location = 0) in vec3 relative;
@@ -31,6 +32,6 @@ void main()
     if (dot(shading, view) <= 0.0) shading = geometric; // interpolated or bent away from the eye
     outNormalRoughness = vec4(shading, kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness);
     outBaseColorMetallic = vec4(point.baseColor.rgb, point.metallic);
-    outEmission = vec4(point.emission, 1.0);
+    outEmission = storedBright(point.emission);
     outGeometricNormal = vec4(geometric, 0.0);
 }

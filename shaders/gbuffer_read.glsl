@@ -2,6 +2,7 @@
 #include "shared/frame.h"
 #include "shared/frame_passes.h"
 #include "shared/brdf.h"
+#include "stored_light.glsl"
 
 layout(set = 1, binding = kDepthBinding) uniform texture2D gDepth;           // r: reversed depth; 0 is the sky
 layout(set = 1, binding = kNormalRoughnessBinding) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness

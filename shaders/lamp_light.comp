@@ -13,10 +13,10 @@
 layout(local_size_x = 64) in;
 layout(constant_id = kLampTermsId) const uint kTerms = 15u; // bit i: of term i
 layout(constant_id = kLampEachId) const bool kEach = false; // normals differ from pixel to pixel of a look-up
-layout(set = 1, binding = kLampDiffuseBinding, rgba32f) uniform image2D diffuse; // as the passes before it left them
-layout(set = 1, binding = kLampRoughBinding, rgba32f) uniform image2D rough;
-layout(set = 1, binding = kLampGlossyBinding, rgba32f) uniform image2D glossy;
-layout(set = 1, binding = kLampMirrorBinding, rgba32f) uniform image2D mirror;
+layout(set = 1, binding = kLampDiffuseBinding, rgba16f) uniform image2D diffuse; // as the passes before it left them
+layout(set = 1, binding = kLampRoughBinding, rgba16f) uniform image2D rough;
+layout(set = 1, binding = kLampGlossyBinding, rgba16f) uniform image2D glossy;
+layout(set = 1, binding = kLampMirrorBinding, rgba16f) uniform image2D mirror;
 
 const float kNarrow = 0.25; // roughness below which a reflection of a lamp differs from pixel to pixel
 const float kMostOfEdge = 0.15; // of half its width, that four pixels of one look-up span
@@ -46,10 +46,10 @@ FromLamp fromLamp(Lamp lamp, Pixel p, vec3 point)
 void add(ivec2 at, uint terms, FromLamp light)
 {
     // Of constants, so that no image is touched that is not made.
-    if ((kTerms & (1u << kTermDiffuse)) != 0u && (terms & (1u << kTermDiffuse)) != 0u) imageStore(diffuse, at, imageLoad(diffuse, at) + vec4(light.arriving, 0.0));
-    if ((kTerms & (1u << kTermRough)) != 0u && (terms & (1u << kTermRough)) != 0u) imageStore(rough, at, imageLoad(rough, at) + vec4(light.reflected, 0.0));
-    if ((kTerms & (1u << kTermGlossy)) != 0u && (terms & (1u << kTermGlossy)) != 0u) imageStore(glossy, at, imageLoad(glossy, at) + vec4(light.reflected, 0.0));
-    if ((kTerms & (1u << kTermMirror)) != 0u && (terms & (1u << kTermMirror)) != 0u) imageStore(mirror, at, imageLoad(mirror, at) + vec4(light.reflected, 0.0));
+    if ((kTerms & (1u << kTermDiffuse)) != 0u && (terms & (1u << kTermDiffuse)) != 0u) imageStore(diffuse, at, storedLight(imageLoad(diffuse, at) + vec4(light.arriving, 0.0)));
+    if ((kTerms & (1u << kTermRough)) != 0u && (terms & (1u << kTermRough)) != 0u) imageStore(rough, at, storedLight(imageLoad(rough, at) + vec4(light.reflected, 0.0)));
+    if ((kTerms & (1u << kTermGlossy)) != 0u && (terms & (1u << kTermGlossy)) != 0u) imageStore(glossy, at, storedLight(imageLoad(glossy, at) + vec4(light.reflected, 0.0)));
+    if ((kTerms & (1u << kTermMirror)) != 0u && (terms & (1u << kTermMirror)) != 0u) imageStore(mirror, at, storedLight(imageLoad(mirror, at) + vec4(light.reflected, 0.0)));
 }
 
 void main()

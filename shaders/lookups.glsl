@@ -1,6 +1,9 @@
 // The look-ups of a pass, each for one pixel or for 2x2 that show one flat surface: classify_tiles.comp lists them, so that no invocation idles beside an
 // edge. After tiles.glsl. Dispatch: the list's TileRuns.
 #include "look_up_rows.glsl"
+#ifndef SCONCE_READS_PIXEL
+#define SCONCE_READS_PIXEL readPixel
+#endif
 layout(constant_id = kLookUpListId) const uint kLookUpList = 0u;
 
 struct LookUp
@@ -32,10 +35,10 @@ ivec2 pixelOf(LookUp l, int i) { return l.at + ivec2(i & 1, i >> 1); }
 /// Its pixel, or what is in the middle of four: their place, normal and roughness; the rest as the first has it.
 Pixel readLookUp(inout LookUp l)
 {
-    Pixel p = readPixel(l.at);
+    Pixel p = SCONCE_READS_PIXEL(l.at);
     l.across = 0.0;
     if (l.pixels == 1) return p;
-    Pixel q = readPixel(l.at + 1); // across: halfway between is the middle
+    Pixel q = SCONCE_READS_PIXEL(l.at + 1); // across: halfway between is the middle
     l.across = distance(p.position, q.position);
     p.position = 0.5 * (p.position + q.position);
     p.normal = normalize(p.normal + q.normal);

@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermDiffuse; // or kTermRough
 layout(constant_id = kMovingBoxesId) const bool kBoxes = false; // of boxes, else of round shapes: where lanes are vectors, a branch costs as if all took it
 layout(constant_id = kMovingLooksId) const bool kLooks = true; // else what shapes hide is taken for as bright as all the rest
-layout(set = 1, binding = kMovingLightBinding, rgba32f) uniform image2D looked; // diffuse: mean of the arriving radiance; rough: radiance to the eye
+layout(set = 1, binding = kMovingLightBinding, rgba16f) uniform image2D looked; // diffuse: mean of the arriving radiance; rough: radiance to the eye
 
 const float kFarthest = 16.0; // times its radius: a sphere hides 1/256 there
 const float kFading = 12.0;   // the same, from where on its share goes to 0
@@ -168,5 +168,5 @@ void main()
     vec4 before = imageLoad(looked, at);
     vec3 left = asked != kNoProbe ? max(before.rgb - hidden, vec3(0.0)) : open * before.rgb;
     if (kTerm == kTermRough) sent *= specularColor(lobesAt(p.brdf, dot(p.normal, p.view)));
-    imageStore(looked, at, vec4(left + sent, before.a));
+    imageStore(looked, at, storedLight(vec4(left + sent, before.a)));
 }

@@ -1,4 +1,5 @@
 // Tracing one pixel of 2, 4, 8 or 16 and making the rest from those about it. After gbuffer_read.glsl.
+#include "packed_pixel.glsl"
 layout(constant_id = kEveryLogId) const uint kEveryLog = 0u; // log2 of the pixels for each that is traced, 0..4
 
 // A regular lattice: one pixel of each cell, whose place changes from frame to frame, so that a filter over time meets all. For 2 and 8, whose
@@ -17,13 +18,13 @@ ivec2 latticePixel(ivec2 cell)
 
 /// What a traced pixel says of another, [0,1]: 0 across edges, outside the picture and where it lacks the term (Bala, Walter, Greenberg 2003,
 /// "Combining Edges and Points for Interactive High-Quality Rendering", interpolate between sparse samples and never over an edge).
-/// @param q  the traced pixel's surface, for whom a weight > 0 is returned
-float latticeWeight(Surroundings about, ivec2 at, ivec2 tap, uint term, out Pixel q)
+float latticeWeight(Surroundings about, ivec2 at, ivec2 tap, uint term)
 {
     vec2 away = abs(vec2(tap - at)) / (kTent * vec2(kCell));
     if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(frame.size))) || max(away.x, away.y) >= 1.0) return 0.0;
-    q = readPixel(tap);
-    if ((termsOf(q) & (1u << term)) == 0u) return 0.0;
+    uint terms;
+    Pixel q = readPacked(tap, terms);
+    if ((terms & (1u << term)) == 0u) return 0.0;
     return (1.0 - away.x) * (1.0 - away.y) * likeness(about, q);
 }
 
@@ -37,9 +38,6 @@ bool isTraced(Pixel p, ivec2 at, uint term)
     if (term == kTermGlossy && filterReach(p.brdf.roughness) < float(kCell.x)) return true;
     Surroundings about = surroundingsOf(p);
     for (int i = 0; i < 9; ++i)
-    {
-        Pixel q;
-        if (latticeWeight(about, at, latticePixel(cellAbout(at, i)), term, q) >= kLeastWeight) return false;
-    }
+        if (latticeWeight(about, at, latticePixel(cellAbout(at, i)), term) >= kLeastWeight) return false;
     return true;
 }

@@ -9,6 +9,8 @@ layout(constant_id = kSurfaceProbesId) const int kBlended = 2; // probes
 #include "gbuffer_read.glsl"
 #define SCONCE_LEAVES_LOOK_UPS
 #include "tiles.glsl"
+#include "packed_pixel.glsl"
+#define SCONCE_READS_PIXEL readPacked
 #include "lookups.glsl"
 
 // Diffuse light of all sources but the host's own, read from the surface light of the probes that see the pixel. No sample, no filter. Rough
@@ -16,7 +18,7 @@ layout(constant_id = kSurfaceProbesId) const int kBlended = 2; // probes
 // lanes are vectors, few that search would have all wait.
 // Dispatch: see lookups.glsl.
 layout(local_size_x = 64) in;
-layout(set = 1, binding = kSurfaceDiffuseBinding, rgba32f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
+layout(set = 1, binding = kSurfaceDiffuseBinding, rgba16f) writeonly uniform image2D diffuse; // rgb: cosine-weighted mean of the arriving radiance (no albedo); a: SurfaceLight::probes
 
 const float kMostOfTexel = 0.5; // of its width, that four pixels of one look-up span
 const float kMostOfSoft = 1.0;  // the same where the sharpest shadows are those of lamps, which are not in it
@@ -63,7 +65,7 @@ void main()
     for (int i = 0; i < lookUp.pixels; ++i)
     {
         ivec2 at = pixelOf(lookUp, i);
-        vec3 normal = field.surfaceDirections != 0u && lookUp.pixels > 1 ? texelFetch(gNormalRoughness, at, 0).xyz : p.normal;
-        imageStore(diffuse, at, vec4(lightOn(normal, found), float(found.probes)));
+        vec3 normal = field.surfaceDirections != 0u && lookUp.pixels > 1 ? readPacked(at).normal : p.normal;
+        imageStore(diffuse, at, storedLight(vec4(lightOn(normal, found), float(found.probes))));
     }
 }

@@ -3,8 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_read.glsl"
-#include "shared/texel.h"
-#include "shared/chart.h"
+#include "packed_pixel.glsl"
 #include "tiles.glsl"
 
 // Blends a term's light with what the frame before had for the same point (McGuire et al. 2017, section 5.1, reproject likewise; Karis 2014,
@@ -12,11 +11,11 @@
 // moves: at the mirrored hit behind the surface, as far as the ray went. Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
-layout(set = 1, binding = kBlendLightBinding, rgba32f) uniform image2D light;              // rgb; a: of the glossy term the distance of the hit, metres
-layout(set = 1, binding = kBlendBeforeBinding, rgba32f) readonly uniform image2D before;    // rgb, a: frames blended
-layout(set = 1, binding = kBlendPointsBeforeBinding, rg32ui) readonly uniform uimage2D pointsBefore;
-layout(set = 1, binding = kBlendAfterBinding, rgba32f) writeonly uniform image2D after;
-layout(set = 1, binding = kBlendPointsAfterBinding, rg32ui) writeonly uniform uimage2D pointsAfter; // distance to the eye, metres, as bits; normal of 2 x 8 bits, term
+layout(set = 1, binding = kBlendLightBinding, rgba16f) uniform image2D light;              // rgb; a: of the glossy term the distance of the hit, metres
+layout(set = 1, binding = kBlendBeforeBinding, rgba16f) readonly uniform image2D before;    // rgb, a: frames blended
+layout(set = 1, binding = kBlendPointsBeforeBinding, r32ui) readonly uniform uimage2D pointsBefore;
+layout(set = 1, binding = kBlendAfterBinding, rgba16f) writeonly uniform image2D after;
+layout(set = 1, binding = kBlendPointsAfterBinding, r32ui) writeonly uniform uimage2D pointsAfter; // distance to the eye, metres, a half float; normal of 2 x 8 bits; 0 where the pixel had no such light
 
 const float kLongest = 32.0;     // frames a history counts for: 97 % of a still picture is the past (the paper: 98 %)
 const float kLongestGlossy = 8.0; // of a sharp reflection: 88 % (the paper: 75 %)
@@ -51,10 +50,10 @@ vec4 history(vec2 pixel, float distanceBefore, vec3 normal)
     {
         ivec2 tap = low + ivec2(i & 1, i >> 1);
         if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
-        uvec2 point = imageLoad(pointsBefore, tap).xy;
-        if ((point.y >> 16) != kTerm + 1u) continue;
-        bool sameDepth = abs(uintBitsToFloat(point.x) - distanceBefore) < 0.02 * distanceBefore;
-        if (!sameDepth || dot(unpackNormal8(point.y), normal) < 0.9) continue;
+        uint point = imageLoad(pointsBefore, tap).x;
+        if (point == 0u) continue;
+        bool sameDepth = abs(halfToReal(point) - distanceBefore) < 0.02 * distanceBefore;
+        if (!sameDepth || dot(unpackNormal8(point >> 16), normal) < 0.9) continue;
         float weight = ((i & 1) != 0 ? f.x : 1.0 - f.x) * ((i >> 1) != 0 ? f.y : 1.0 - f.y);
         sum += weight * imageLoad(before, tap);
         weights += weight;
@@ -66,14 +65,15 @@ void main()
 {
     ivec2 at;
     if (!findPixel(kTerm, at)) return;
-    Pixel p = readPixel(at);
-    if ((termsOf(p) & (1u << kTerm)) == 0u) return;
+    uint terms;
+    Pixel p = readPacked(at, terms);
+    if ((terms & (1u << kTerm)) == 0u) return;
     vec4 own = imageLoad(light, at);
     vec4 past = vec4(0.0);
     bool sharp = kTerm == kTermGlossy && p.brdf.roughness < 0.25;
     if (frame.follows != 0u)
     {
-        vec3 seen = sharp ? p.position - own.a * p.view : p.position; // the hit, mirrored: on the line of sight, behind the surface
+        vec3 seen = sharp ? p.position - own.a * normalize(frame.eye - p.position) : p.position; // the hit, mirrored: on the line of sight, behind the surface
         vec4 clip = frame.clipFromWorldBefore * vec4(seen, 1.0);
         if (clip.w > 0.0)
             past = history((0.5 * clip.xy / clip.w + 0.5) * vec2(frame.size), distance(p.position, frame.eyeBefore), p.normal);
@@ -87,6 +87,7 @@ void main()
     float frames = min(past.a + 1.0, sharp ? kLongestGlossy : kLongest);
     if (frame.follows > 1u) frames = min(frames, float(frame.follows));
     vec3 blended = mix(past.rgb, own.rgb, 1.0 / frames);
-    imageStore(after, at, vec4(blended, frames));
-    imageStore(pointsAfter, at, uvec4(floatBitsToUint(distance(p.position, frame.eye)), packNormal8(p.normal) | ((kTerm + 1u) << 16), 0u, 0u));
+    // By lot, for a share of 1/32 of what is new is less than a half float's step, and would be lost each frame.
+    imageStore(after, at, storedLight(vec4(blended, frames), randomPair(uvec2(at), 0u, 6u, frame.seed).x));
+    imageStore(pointsAfter, at, uvec4(realToHalf(distance(p.position, frame.eye)) | (packNormal8(p.normal) << 16)));
 }

@@ -9,8 +9,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
 layout(constant_id = kCountId) const bool kCount = true; // write the counts
+layout(constant_id = kUntintedId) const bool kUntinted = false; // reflections are stored before the surface's tint, for filters
 layout(constant_id = kMovingId) const bool kMoving = false; // rays meet shapes that move
-layout(set = 1, binding = kTraceLightBinding, rgba32f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
+layout(set = 1, binding = kTraceLightBinding, rgba16f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
 layout(set = 1, binding = kTraceCountsBinding, rgba32ui) writeonly uniform uimage2D counts;  // probe of the last ray, hand-offs, reads, unknown rays
 
 shared uint chosenCount;
@@ -61,7 +62,8 @@ void trace(ivec2 at, Pixel p, uint terms)
         count.z += uint(hit.distanceReads + hit.indexReads);
         count.w += hit.status == kUnknown ? 1u : 0u;
     }
-    imageStore(reflected, at, result / float(rays));
+    if (kUntinted) result.rgb /= tintOf(p);
+    imageStore(reflected, at, storedLight(result / float(rays)));
     if (kTerm != kTermDiffuse && kCount && (terms & (1u << kTerm)) != 0u) imageStore(counts, at, count);
 }
 

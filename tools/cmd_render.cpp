@@ -480,6 +480,7 @@ int runRender(RenderOptions options, const Context& context)
     // Only the rays of reflections are counted, where layers tell what they cost; frames without have no means to give.
     if (settings.layers && (settings.effects.glossy || settings.effects.mirror)) addCounts(json, drawn->frame, settings.glossyRays);
     addDiffuseFrom(json, drawn->frame);
+    json["clamped_pixels"] = drawn->frame.clamped;
     if (Status status = options.pictures.write(imagesOf(drawn->frame), json); !status) return fail(status.error());
     // After the pictures are written, so that the cost has that in it.
     addCost(json, watch);

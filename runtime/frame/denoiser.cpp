@@ -1,5 +1,7 @@
 #include "runtime/frame/denoiser.h"
 
+#include <iterator>
+
 #include "runtime/vulkan/nan_scan.h"
 
 #include "spirv/denoise_comp.h"
@@ -66,11 +68,13 @@ Result<DescriptorSet> Denoiser::makeStep(const Buffer& frame, const GpuImage& fr
 {
     const DescriptorSet::Binding bindings[] = {{gpu::kFilterFromBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                {gpu::kFilterToBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                               {gpu::kPackedBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                                                {gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     auto set = makeFrameSet(*gpu, frame, bindings);
     if (!set) return set.error();
     set->write(gpu::kFilterFromBinding, from.view(), VK_IMAGE_LAYOUT_GENERAL);
     set->write(gpu::kFilterToBinding, to.view(), VK_IMAGE_LAYOUT_GENERAL);
+    set->write(gpu::kPackedBinding, desc.tiles->packedPixels().view(), VK_IMAGE_LAYOUT_GENERAL);
     set->write(gpu::kTileBinding, desc.tiles->buffer());
     return set;
 }
@@ -79,8 +83,7 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
 {
     for (History& history : histories)
     {
-        for (const auto& [image, format] :
-             {std::pair{&history.light, VK_FORMAT_R32G32B32A32_SFLOAT}, {&history.points, VK_FORMAT_R32G32_UINT}})
+        for (const auto& [image, format] : {std::pair{&history.light, kLightFormat}, {&history.points, VK_FORMAT_R32_UINT}})
         {
             auto made = makeLightImage(*gpu, format, desc.width, desc.height, "the history of a filter over time");
             if (!made) return made.error();
@@ -97,7 +100,8 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
                                                                {gpu::kBlendBeforeBinding, &other.light},
                                                                {gpu::kBlendPointsBeforeBinding, &other.points},
                                                                {gpu::kBlendAfterBinding, &own.light},
-                                                               {gpu::kBlendPointsAfterBinding, &own.points}};
+                                                               {gpu::kBlendPointsAfterBinding, &own.points},
+                                                               {gpu::kPackedBinding, &desc.tiles->packedPixels()}};
         std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
         for (const auto& [binding, image] : images) bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
         auto set = makeFrameSet(*gpu, frame, bindings);
@@ -181,7 +185,7 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
         const VkDescriptorSet sets[] = {firstSet, step->handle()};
         pipeline.bind(cmd, sets);
-        pipeline.push(cmd, gpu::DenoisePush{stride, desc.followRoughness ? 1 : 0});
+        pipeline.push(cmd, gpu::DenoisePush{stride, desc.followRoughness ? 1 : 0, stride == std::end(kStrides)[-1] ? 1 : 0});
         desc.tiles->dispatch(cmd, desc.term);
         step = step == &back ? &forth : &back;
     }
@@ -189,7 +193,11 @@ void Denoiser::record(VkCommandBuffer cmd, VkDescriptorSet firstSet)
 
 uint64_t Denoiser::deviceBytes() const
 {
-    return desc.temporal ? uint64_t(desc.width) * desc.height * 2 * (16 + 8) : 0;
+    uint64_t bytes = 0;
+    for (const History& history : histories)
+        for (const GpuImage* image : {&history.light, &history.points})
+            if (*image) bytes += image->bytes();
+    return bytes;
 }
 
 } // namespace sconce

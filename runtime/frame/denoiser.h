@@ -16,11 +16,12 @@ public:
         VkDescriptorSetLayout firstSet = VK_NULL_HANDLE; // of whatever lies in descriptor set 0
         uint32_t term = gpu::kTermGlossy;                // only its pixels are read and written
         bool followRoughness = false;    // a pixel's reach shrinks with its roughness, to nothing for a mirror: for the glossy term
-        bool temporal = false;           // blend with the frames before, as FrameView::follows allows; 48 bytes more a pixel
+        bool temporal = false;           // blend with the frames before, as FrameView::follows allows; 24 bytes more a pixel
         const TileList* tiles = nullptr; // needed
         uint32_t width = 0, height = 0;
     };
-    /// @param light    RGBA32F in VK_IMAGE_LAYOUT_GENERAL, noisy; filtered in place
+    /// @param light    of kLightFormat, in VK_IMAGE_LAYOUT_GENERAL, noisy; filtered in place. The glossy term is given before its surfaces'
+    ///                 tint (gpu::kUntintedId), and has it in the end
     /// @param scratch  another one
     static Result<Denoiser> create(Gpu& gpu, const Desc& desc, const Buffer& frame, const GpuImage& light, const GpuImage& scratch);
     void setInputs(const FrameInputs& inputs);

@@ -13,7 +13,7 @@ namespace sconce
 namespace
 {
 
-constexpr size_t kImageBytes = 16; // a pixel of an RGBA32F image
+constexpr size_t kImageBytes = 8; // a pixel of an image of kLightFormat
 
 std::string bytes(size_t count, const char* of)
 {
@@ -43,7 +43,9 @@ std::string costOf(std::string_view name)
     if (name == "glossy")
         return fmt::format("A ray a pixel of glossy tiles of about 20 distance reads, {}, {} at faces of 256 texels.",
                            bytes(kImageBytes, "pixel"), bytes(radiance, "probe"));
-    if (name == "mirror") return fmt::format("A ray a pixel of mirroring tiles, {}; the radiance of glossy.", bytes(kImageBytes, "pixel"));
+    if (name == "mirror")
+        return fmt::format("A ray a pixel of mirroring tiles; the image of glossy, or {} without; the radiance of glossy.",
+                           bytes(kImageBytes, "pixel"));
     if (name == "denoise") return fmt::format("Four filter passes over glossy tiles, {}.", bytes(kImageBytes, "pixel"));
     if (name == "masked") return "A texture read a pixel where something is cut out, in G-buffer, bake and shadow maps.";
     return "The back faces of what is closed are drawn, too: up to twice the triangles; no light of its own.";

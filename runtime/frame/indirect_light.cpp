@@ -19,8 +19,6 @@ namespace sconce
 namespace
 {
 
-constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-
 std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc)
 {
     const uint32_t most = gpu.properties.limits.maxImageDimension2D;
@@ -78,12 +76,13 @@ Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Sp
 
 Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
-    if (auto s = makeImage(image, kLightFormat,
-                           term == gpu::kTermMirror    ? "mirrored light"
-                           : term == gpu::kTermDiffuse ? "diffuse light"
-                                                       : "glossy light");
-        !s)
-        return s;
+    if (!image)
+        if (auto s = makeImage(image, kLightFormat,
+                               term == gpu::kTermMirror    ? "mirrored light"
+                               : term == gpu::kTermDiffuse ? "diffuse light"
+                                                           : "glossy light");
+            !s)
+            return s;
     const bool counts = desc.counts && term != gpu::kTermDiffuse; // a pixel's reflections are counted
     if (!counts && !noCounts) // what isn't written is bound all the same, in the format that the shader names
     {
@@ -95,18 +94,21 @@ Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline&
         if (auto s = makeImage(countImage, VK_FORMAT_R32G32B32A32_UINT, "trace counts"); !s) return s;
     const Spirv shader = shaders.glossy.empty() ? Spirv(trace_glossy_comp) : shaders.glossy;
     return makePass(pipeline, set, shader,
-                    {{gpu::kTraceLightBinding, &image}, {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts}},
+                    {{gpu::kTraceLightBinding, &image},
+                     {gpu::kTraceCountsBinding, counts ? &countImage : &noCounts},
+                     {gpu::kPackedBinding, &tileList->packedPixels()}},
                     {{gpu::kTermId, term},
                      {gpu::kCountId, counts ? 1u : 0u},
                      {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()},
+                     {gpu::kUntintedId, untinted(term)},
                      {gpu::kMovingId, moving ? 1u : 0u}});
 }
 
 Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
 {
     if (desc.traceEvery == 1) return success();
-    return makePass(pipeline, set, reconstruct_comp, {{gpu::kFillLightBinding, &image}},
-                    {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}});
+    return makePass(pipeline, set, reconstruct_comp, {{gpu::kFillLightBinding, &image}, {gpu::kPackedBinding, &tileList->packedPixels()}},
+                    {{gpu::kTermId, term}, {gpu::kEveryLogId, everyLog()}, {gpu::kUntintedId, untinted(term)}});
 }
 
 /// Of the pass that reads light at surfaces, whose light scales rough reflections, too, and of the one that adds lamps; of what the first
@@ -150,7 +152,7 @@ Status IndirectLight::State::makeLamps()
         {gpu::kTermDiffuse, readsSurfaces() || tracesDiffuse() ? &diffuseImage : nullptr},
         {gpu::kTermRough, &roughImage},
         {gpu::kTermGlossy, &glossyImage},
-        {gpu::kTermMirror, &mirrorImage}};
+        {gpu::kTermMirror, &mirrored()}};
     uint32_t terms = 0;
     const GpuImage* any = nullptr;
     for (const auto& [term, image] : images)
@@ -238,7 +240,7 @@ Status IndirectLight::State::make()
     if (readsSurfaces())
         for (uint32_t isRest : {0u, 1u})
             if (auto s = makePass(isRest ? surfaceRestPass : surfacePass, surfaceSet, surface_light_comp,
-                                  {{gpu::kSurfaceDiffuseBinding, &diffuseImage}},
+                                  {{gpu::kSurfaceDiffuseBinding, &diffuseImage}, {gpu::kPackedBinding, &tileList->packedPixels()}},
                                   {{gpu::kLookUpListId, isRest},
                                    {gpu::kLookUpRestId, 1},
                                    {gpu::kIsRestId, isRest},
@@ -252,10 +254,11 @@ Status IndirectLight::State::make()
         if (auto s = makeTrace(gpu::kTermDiffuse, diffuseImage, diffusePass, diffuseSet); !s) return s;
         if (auto s = makeFill(gpu::kTermDiffuse, diffuseImage, diffuseFill, diffuseFillSet); !s) return s;
     }
-    if (effects.mirror)
-        if (auto s = makeTrace(gpu::kTermMirror, mirrorImage, mirrorPass, mirrorSet); !s) return s;
+    if (effects.glossy)
+        if (auto s = makeTrace(gpu::kTermGlossy, glossyImage, glossyPass, glossySet); !s) return s;
+    if (effects.mirror) // after the glossy image, which may be its own
+        if (auto s = makeTrace(gpu::kTermMirror, mirrorsInGlossy() ? glossyImage : mirrorImage, mirrorPass, mirrorSet); !s) return s;
     if (!effects.glossy) return success();
-    if (auto s = makeTrace(gpu::kTermGlossy, glossyImage, glossyPass, glossySet); !s) return s;
     if (auto s = makeFill(gpu::kTermGlossy, glossyImage, glossyFill, glossyFillSet); !s) return s;
     if (!effects.denoise) return success();
     if (auto s = makeImage(scratch, kLightFormat, "scratch of the glossy filter"); !s) return s;
@@ -299,11 +302,14 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 {
     assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    // Write after read and after write: view, counts and images are the same ones each frame. The frame before may still read its outputs
-    // in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for.
+    // Write after read and after write: view, lists, counts and images are the same ones each frame. The frame before may still read its
+    // outputs in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for. Once for all that a frame
+    // writes anew.
     memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
                   VK_ACCESS_2_MEMORY_WRITE_BIT);
+    // Recorded, not written by the host: the frame before may still run with its own view.
     gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
+    if (tileList) tileList->clear(cmd);
     if (moving) gpu->vk.CmdUpdateBuffer(cmd, moving.handle(), 0, shapeBytes.size(), shapeBytes.data());
     // Traces write where rays start; the other pixels must not keep the counts of the frame before.
     if (countImage)
@@ -312,7 +318,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
         const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
     }
-    // Every pass reads the view; traces write over the cleared counts.
+    // Every pass reads the view; classification counts up by atomics from the cleared lists; traces write over the cleared counts.
     memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
                   VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const auto timed = [&](const char* name, auto&& work)
@@ -371,7 +377,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
         memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     pass(mirrorPass, mirrorSet, "mirror trace", onTiles(gpu::kTermMirror));
-    scan("mirror trace", {&mirrorImage});
+    scan("mirror trace", {&mirrored()});
     if (glossyFill || diffuseFill)
     {
         // Read after write: a fill takes light from the traced pixels about its own, and stores into the same image. One barrier for both
@@ -418,10 +424,9 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 
 uint64_t IndirectLight::State::deviceBytes() const
 {
-    const uint64_t pixels = uint64_t(desc.width) * desc.height;
-    uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->buffer().size() : 0);
+    uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->deviceBytes() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
-        if (*image) bytes += 16 * pixels;
+        if (*image) bytes += image->bytes();
     return bytes + denoiser.deviceBytes();
 }
 
@@ -472,7 +477,7 @@ IndirectLight::Output IndirectLight::glossy() const
 
 IndirectLight::Output IndirectLight::mirror() const
 {
-    return outputOf(owned->mirrorImage);
+    return outputOf(owned->mirrored());
 }
 
 IndirectLight::Output IndirectLight::counts() const
@@ -484,7 +489,7 @@ uint32_t IndirectLight::made() const
 {
     const auto bit = [](const GpuImage& image, uint32_t term) { return image ? 1u << term : 0u; };
     return bit(owned->diffuseImage, gpu::kTermDiffuse) | bit(owned->roughImage, gpu::kTermRough) |
-           bit(owned->glossyImage, gpu::kTermGlossy) | bit(owned->mirrorImage, gpu::kTermMirror);
+           bit(owned->glossyImage, gpu::kTermGlossy) | bit(owned->mirrored(), gpu::kTermMirror);
 }
 
 uint64_t IndirectLight::deviceBytes() const

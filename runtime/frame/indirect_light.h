@@ -50,6 +50,8 @@ struct IndirectLight::State
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
     uint64_t deviceBytes() const;
     /// Whether diffuse light is read from the field's surface light, which has no noise and all sources but the host's in it.
+    /// Where the mirror's light is: in the glossy image, where passes write the pixels of their term alone, for no pixel has both.
+    const GpuImage& mirrored() const { return mirrorsInGlossy() ? glossyImage : mirrorImage; }
     bool readsSurfaces() const { return readsSurfaceLight(desc.effects, field.info()); }
 
 private:
@@ -65,6 +67,8 @@ private:
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
     uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
+    uint32_t untinted(uint32_t term) const { return term == gpu::kTermGlossy && desc.effects.denoise ? 1 : 0; } // gpu::kUntintedId
+    bool mirrorsInGlossy() const { return desc.effects.tiles && desc.effects.glossy && desc.effects.mirror; }
     bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
     bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }
     std::vector<TileList::LookUps> lookUps() const;

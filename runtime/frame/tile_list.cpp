@@ -26,11 +26,16 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& des
         gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
     made.lists = std::move(*lists);
-    const DescriptorSet::Binding bindings[] = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    auto packed = makeLightImage(gpu, VK_FORMAT_R32G32_UINT, desc.width, desc.height, "packed pixels");
+    if (!packed) return packed.error();
+    made.packed = std::move(*packed);
+    const DescriptorSet::Binding bindings[] = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                               {gpu::kPackedBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
     auto set = makeFrameSet(gpu, frame, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
     made.set.write(gpu::kTileBinding, made.lists);
+    made.set.write(gpu::kPackedBinding, made.packed.view(), VK_IMAGE_LAYOUT_GENERAL);
     const VkDescriptorSetLayout layouts[] = {made.set.layout(), made.set.layout()}; // set 0 is not used
     std::vector<ShaderConstant> constants = {{gpu::kEveryLogId, desc.everyLog}, made.constant()};
     for (uint32_t list = 0; list < desc.lookUps.size(); ++list)
@@ -44,23 +49,21 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& des
     return made;
 }
 
+void TileList::clear(VkCommandBuffer cmd) const
+{
+    gpu::TileRuns none[kRuns];
+    for (gpu::TileRuns& runs : none) runs = {gpu::kTileRow, 0, 1, 0};
+    gpu->vk.CmdUpdateBuffer(cmd, lists.handle(), 0, sizeof none, none);
+}
+
 void TileList::record(VkCommandBuffer cmd) const
 {
     constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, indirect = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
-    gpu::TileRuns none[kRuns];
-    for (gpu::TileRuns& runs : none) runs = {gpu::kTileRow, 0, 1, 0};
-    // Write after read and after write: the lists are read in two ways, as sizes of dispatches (indirect) and by the passes themselves
-    // (compute).
-    memoryBarrier(*gpu, cmd, compute | indirect, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT); // the frame before may still run by them
-    gpu->vk.CmdUpdateBuffer(cmd, lists.handle(), 0, sizeof none, none);
-    // The classifying pass counts up by atomics from what the update wrote.
-    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     const VkDescriptorSet sets[] = {set.handle(), set.handle()};
     pipeline.bind(cmd, sets);
     gpu->vk.CmdDispatch(cmd, across, down, 1);
-    // Read after write, in both ways; for every pass of the frame, so that they need no barrier for the lists.
+    // Read after write, in two ways: as sizes of dispatches (indirect) and by the passes themselves (compute); for every pass of the frame,
+    // so that they need no barrier for the lists.
     memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute | indirect,
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
 }

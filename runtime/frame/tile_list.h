@@ -8,8 +8,8 @@ namespace sconce
 {
 
 /// Which tiles of a frame need which term, which terms each pixel has, and what passes look up (shaders/shared/frame.h): classified on the
-/// device from the G-buffer, so that each pass runs only where it is called for, and filters ask a neighbour's terms by one read. Cost: one
-/// read of the G-buffer a pixel.
+/// device from the G-buffer, so that each pass runs only where it is called for; and what filters ask of a pixel, in one word pair
+/// (shaders/packed_pixel.glsl). Cost: one read of the G-buffer a pixel.
 class TileList
 {
 public:
@@ -29,6 +29,8 @@ public:
     /// @param frame  the gpu::FrameView, a uniform buffer
     static Result<TileList> create(Gpu& gpu, const Buffer& frame, const Desc& desc);
     void setInputs(const FrameInputs& inputs) { writeInputs(set, inputs); }
+    /// Empties the lists, by a transfer: the caller orders it after the frame before, which ran by them, and before record().
+    void clear(VkCommandBuffer cmd) const;
     /// Ends with the barrier that lets passes run by the lists.
     void record(VkCommandBuffer cmd) const;
     /// Dispatches the bound pass over a list's tiles, or over the whole picture.
@@ -38,7 +40,9 @@ public:
     void dispatchLookUps(VkCommandBuffer cmd, uint32_t list) const;
     ShaderConstant constant() const { return {gpu::kTiledId, desc.tiled ? 1u : 0u}; } // of passes that include shaders/tiles.glsl
 
-    const Buffer& buffer() const { return lists; } // their gpu::kTileBinding
+    const Buffer& buffer() const { return lists; }          // their gpu::kTileBinding
+    const GpuImage& packedPixels() const { return packed; } // their gpu::kPackedBinding
+    uint64_t deviceBytes() const { return lists.size() + packed.bytes(); }
     explicit operator bool() const { return bool(pipeline); }
 
 private:
@@ -46,6 +50,7 @@ private:
     Desc desc;
     uint32_t across = 0, down = 0; // tiles
     Buffer lists;
+    GpuImage packed;
     DescriptorSet set;
     Pipeline pipeline;
 };

@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // what is shown and written, of any brightness
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
 
@@ -73,7 +73,7 @@ Status SceneRenderer::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv sha
                                uint32_t pushBytes, VkDescriptorSetLayout first, std::span<const ShaderConstant> constants,
                                VkDescriptorSetLayout third)
 {
-    auto made = makeFrameSet(gpu, frameBlock, extra);
+    auto made = makeFrameSet(gpu, indirect->state().frame, extra);
     if (!made) return made.error();
     set = std::move(*made);
     writeInputs(set, gBuffer);
@@ -113,24 +113,22 @@ Status SceneRenderer::make()
     if (auto s = image(depth, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth"); !s) return s;
     for (auto [target, format, what] : {std::tuple{&normalRoughness, kGBufferFormat, "normals"},
                                         {&baseColorMetallic, kGBufferFormat, "base colour"},
-                                        {&emission, kLightFormat, "emission"}, // may be beyond the 65,504 of 16 bits
+                                        {&emission, kLightFormat, "emission"},
                                         {&geometricNormal, kGBufferFormat, "geometric normals"}})
         if (auto s = image(*target, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
-    for (auto [target, what, wanted] : {std::tuple{&direct, "direct light", true},
-                                        {&beauty, "picture", true},
-                                        {&scratch, "scratch of the diffuse filter", effects.diffuse && !indirect->state().readsSurfaces()},
-                                        {&diffuseLayer, "diffuse layer", settings.layers && effects.diffuse},
-                                        {&glossyLayer, "glossy layer", settings.layers && (effects.rough || rays)}})
+    const bool filtersDiffuse = effects.diffuse && !indirect->state().readsSurfaces();
+    for (auto [target, format, what, wanted] :
+         {std::tuple{&direct, kLightFormat, "direct light", true},
+          {&beauty, kPictureFormat, "picture", true},
+          {&scratch, kLightFormat, "scratch of the diffuse filter", filtersDiffuse && !indirect->state().scratch},
+          {&diffuseLayer, kLightFormat, "diffuse layer", settings.layers && effects.diffuse},
+          {&glossyLayer, kLightFormat, "glossy layer", settings.layers && (effects.rough || rays)}})
     {
         if (!wanted) continue;
-        auto made = makeLightImage(gpu, kLightFormat, settings.width, settings.height, what);
+        auto made = makeLightImage(gpu, format, settings.width, settings.height, what);
         if (!made) return made.error();
         *target = std::move(*made);
     }
-    // Before the passes: makePass() writes the frame view and the G-buffer into the set of each.
-    auto block = gpu.makeBuffer(sizeof(gpu::FrameView), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "frame view");
-    if (!block) return block.error();
-    frameBlock = std::move(*block);
     gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     // Once: the images of the G-buffer stay the same in all frames.
     indirect->setInputs(gBuffer);
@@ -198,7 +196,7 @@ Status SceneRenderer::makeDiffuse()
     }
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
                               settings.width, settings.height};
-    auto made = Denoiser::create(gpu, desc, frameBlock, indirect->state().diffuseImage, scratch);
+    auto made = Denoiser::create(gpu, desc, indirect->state().frame, indirect->state().diffuseImage, filterScratch());
     if (!made) return made.error();
     denoiser = std::move(*made);
     denoiser.setInputs(gBuffer);
@@ -214,12 +212,12 @@ Status SceneRenderer::makeCompose()
         const GpuImage& image;
         bool made;
     };
-    // What is not made is not read: anything may be bound in its place.
+    // What is not made is not read: anything of the format may be bound in its place.
     const Shown images[] = {{gpu::kComposeDirectBinding, direct, true},
                             {gpu::kComposeDiffuseBinding, indirect->state().diffuseImage, effects.diffuse},
                             {gpu::kComposeRoughBinding, indirect->state().roughImage, effects.rough},
                             {gpu::kComposeGlossyBinding, indirect->state().glossyImage, effects.glossy},
-                            {gpu::kComposeMirrorBinding, indirect->state().mirrorImage, effects.mirror},
+                            {gpu::kComposeMirrorBinding, indirect->state().mirrored(), effects.mirror},
                             {gpu::kComposeBeautyBinding, beauty, true},
                             {gpu::kComposeDiffuseLayerBinding, diffuseLayer, bool(diffuseLayer)},
                             {gpu::kComposeGlossyLayerBinding, glossyLayer, bool(glossyLayer)}};
@@ -234,7 +232,7 @@ Status SceneRenderer::makeCompose()
     const ShaderConstant constants[] = {
         {gpu::kMadeId, made}, {gpu::kDiffuseLayerId, diffuseLayer ? 1u : 0u}, {gpu::kGlossyLayerId, glossyLayer ? 1u : 0u}};
     if (auto s = makePass(composePass, composeSet, compose_comp, bindings, 0, scene.layout(), constants); !s) return s;
-    for (const Shown& shown : images) composeSet.write(shown.binding, (shown.made ? shown.image : beauty).view(), VK_IMAGE_LAYOUT_GENERAL);
+    for (const Shown& shown : images) composeSet.write(shown.binding, (shown.made ? shown.image : direct).view(), VK_IMAGE_LAYOUT_GENERAL);
     return success();
 }
 
@@ -281,13 +279,15 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
 {
     const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &emission, &geometricNormal};
     VkRenderingAttachmentInfo colors[4]{};
+    // Write after read: the frame before, or a copy of it to the host, may still read them. From undefined: every pixel is cleared, so that
+    // nothing needs to be kept. No access of the past: after reads alone, a stage to wait for is all.
+    constexpr VkPipelineStageFlags2 readers =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    transition(gpu, cmd, targets,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, readers,
+                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
     for (int i = 0; i < 4; ++i)
     {
-        // Write after read: the frame before, or a copy of it to the host, may still read them, by whatever stage. From undefined: every
-        // pixel is cleared, so that nothing needs to be kept.
-        transition(gpu, cmd, *targets[i],
-                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_MEMORY_READ_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
         colors[i].sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
         colors[i].imageView = targets[i]->view();
         colors[i].imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -297,8 +297,7 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     constexpr VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
     // Depth likewise; its tests read it, too.
     transition(gpu, cmd, depth,
-               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, tests,
-                VK_ACCESS_2_MEMORY_READ_BIT,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, readers, tests, 0,
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
     VkRenderingAttachmentInfo depthInfo{};
     depthInfo.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
@@ -329,11 +328,10 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     scene.mesh().draw(cmd, draws.masked);
     gpu.vk.CmdEndRendering(cmd);
     constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    for (const GpuImage* target : targets)
-        // Read after write: compute passes alone read the G-buffer.
-        transition(gpu, cmd, *target,
-                   {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    // Read after write: compute passes alone read the G-buffer.
+    transition(gpu, cmd, targets,
+               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
     // The same for depth, whichever tests wrote it.
     transition(gpu, cmd, depth,
                {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, read, tests, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
@@ -369,16 +367,10 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     for (const GpuImage* image : {&depth, &normalRoughness, &baseColorMetallic, &emission, &geometricNormal})
         scanImage(gpu, cmd, "G-buffer", *image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
-    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    // Write after read and after write: passes of the frame before may still read its view, and write or read the pictures that this frame
-    // writes.
-    memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | compute, VK_ACCESS_2_MEMORY_WRITE_BIT);
-    // Recorded, not written by the host: the frame before may still be running with its own view.
-    gpu.vk.CmdUpdateBuffer(cmd, frameBlock.handle(), 0, sizeof(view), &view);
-    // Read after write: the view, which is all that the update wrote.
-    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, VK_ACCESS_2_UNIFORM_READ_BIT);
+    // Begins by waiting for the frame before, so that nothing of this one, but the G-buffer, may stand ahead of it.
+    indirect->record(cmd, view, timer);
 
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     // Workgroups of direct light and composition are 8 x 8 pixels; these passes drop what lies beyond the edge.
     const uint32_t groupsX = (settings.width + 7) / 8, groupsY = (settings.height + 7) / 8;
     if (timer) timer->begin(cmd, "direct light");
@@ -388,9 +380,6 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
     if (timer) timer->end(cmd);
     scanImage(gpu, cmd, "direct light", direct);
-
-    // Before the area lights, which add to the diffuse term that this writes.
-    indirect->record(cmd, view, timer);
 
     const auto begin = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, bool withField = false)
     {
@@ -417,7 +406,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         denoiser.record(cmd, scene.descriptorSet());
         if (timer) timer->end(cmd);
         scanImage(gpu, cmd, "diffuse denoise", indirect->state().diffuseImage);
-        scanImage(gpu, cmd, "diffuse denoise", scratch);
+        scanImage(gpu, cmd, "diffuse denoise", filterScratch());
     }
     begin(composePass, composeSet, "compose");
     gpu.vk.CmdDispatch(cmd, groupsX, groupsY, 1);
@@ -433,8 +422,8 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, VkImageLayout layout)
 {
     const size_t pixels = size_t(settings.width) * settings.height;
-    const bool isDepth = image.desc().format == kDepthFormat, isHalf = image.desc().format == kGBufferFormat;
-    const size_t pixelBytes = isDepth ? 4 : (isHalf ? 8 : 16);
+    const bool isDepth = image.desc().format == kDepthFormat, isHalf = image.desc().format == VK_FORMAT_R16G16B16A16_SFLOAT;
+    const size_t pixelBytes = texelBytes(image.desc().format);
     auto buffer = gpu.makeBuffer(pixels * pixelBytes, 0, MemoryUse::readback, "picture read back");
     if (!buffer) return buffer.error();
     auto status = gpu.submit(
@@ -477,8 +466,7 @@ Result<std::vector<glm::vec4>> SceneRenderer::readBack(const GpuImage& image, Vk
 
 uint64_t SceneRenderer::deviceBytes() const
 {
-    const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    return indirect->deviceBytes() + (scratch ? 16 * pixels : 0) + denoiser.deviceBytes();
+    return indirect->deviceBytes() + (scratch ? scratch.bytes() : 0) + denoiser.deviceBytes();
 }
 
 Result<std::vector<GpuTimer::Scope>> SceneRenderer::draw(const Camera& camera, uint32_t index)
@@ -537,8 +525,12 @@ Result<RenderedFrame> SceneRenderer::read()
         return success();
     };
     constexpr VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL, read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    if (auto s = colors(frame.beauty, beauty, general); !s) return s.error();
-    if (auto s = colors(frame.direct, direct, general); !s) return s.error();
+    std::vector<float> whole;
+    if (auto s = colors(frame.beauty, beauty, general, &whole); !s) return s.error();
+    frame.clamped = size_t(std::ranges::count(whole, 0.0f));
+    std::vector<float> scales; // of storedBright()
+    if (auto s = colors(frame.direct, direct, general, &scales); !s) return s.error();
+    for (size_t i = 0; i < pixels; ++i) frame.direct[i] *= scales[i];
     frame.diffuseIndirect.assign(pixels, vec3(0.0f));
     frame.glossyIndirect.assign(pixels, vec3(0.0f));
     frame.counts.assign(pixels, glm::uvec4(gpu::kNoProbe, 0, 0, 0));

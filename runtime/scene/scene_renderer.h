@@ -19,7 +19,7 @@ struct RenderSettings
     uint32_t traceEvery = knobs::traceEvery.value;                     // as in IndirectLight::Desc
     uint32_t surfaceProbes = knobs::surfaceProbes.value;               // the same
     IndirectEffects effects;
-    bool layers = true;                              // keep each term's share of the picture, and what rays cost: 48 bytes a pixel
+    bool layers = true;                              // keep each term's share of the picture, and what rays cost: 32 bytes a pixel
     float raysBelow = knobs::raysBelow.value;        // roughness: reflections below it are traced, above it read from prefiltered radiance
     std::optional<float> roughness;                  // [0,1]: every surface has this roughness (the benchmark of both papers)
     uint32_t areaSamples = knobs::areaSamples.value; // samples of the emitters, and as many of the sky, a pixel; noise falls with the root
@@ -40,6 +40,7 @@ struct RenderedFrame
     std::vector<float> roughness;
     std::vector<glm::uvec4> counts;      // probe, hand-offs, reads, unknown rays of the glossy trace
     std::vector<GpuTimer::Scope> times;  // milliseconds a pass, by the GPU's clock
+    size_t clamped = 0;                  // pixels with a term of indirect light at gpu::kMostLight, which may have been brighter
     std::array<size_t, 6> diffuseFrom{}; // pixels whose diffuse light is read at surfaces: of the probes' irradiance alone, of cells in the
                                          // open, of hidden surfaces, of the nearest texel, of one probe, of two; 0 with other diffuse light
 };
@@ -48,7 +49,8 @@ struct RenderedFrame
 /// made.
 struct FramePictures
 {
-    const GpuImage *beauty, *direct, *diffuseLayer, *glossyLayer; // RGBA32F, radiance to the eye
+    const GpuImage* beauty;                              // RGBA32F, radiance to the eye; as the next three
+    const GpuImage *direct, *diffuseLayer, *glossyLayer; // RGBA16F; direct light is storedBright() of shaders/stored_light.glsl
     const GpuImage *normalRoughness, *baseColorMetallic, *depth;
     const GpuImage* counts; // RGBA32UI, as RenderedFrame::counts
     float depthScale;       // metres along the view's axis times what `depth` holds
@@ -92,6 +94,8 @@ private:
     Status makeDiffuse();
     Status makeCompose();
     bool hasAreaLight() const;
+    /// Of the diffuse filter, which runs after the glossy one: that one's, where there is one.
+    const GpuImage& filterScratch() const { return scratch ? scratch : indirect->state().scratch; }
     void drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view);
     Result<std::vector<glm::vec4>> readBack(const GpuImage& image, VkImageLayout layout);
 
@@ -105,7 +109,6 @@ private:
     Denoiser denoiser;
     std::optional<Camera> before; // the camera of the frame before
     uint32_t changing = 0;        // frames to come of changed light
-    Buffer frameBlock;
     FrameInputs gBuffer;
     std::optional<IndirectLight> indirect;
     SceneDraws draws;

@@ -1,6 +1,7 @@
 #include "runtime/vulkan/gpu.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdlib>
 #include <cstring>
@@ -23,6 +24,28 @@ bool isDepth(VkFormat format)
 }
 
 } // namespace
+
+uint32_t texelBytes(VkFormat format)
+{
+    switch (format)
+    {
+    case VK_FORMAT_D16_UNORM:
+        return 2;
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R8G8B8A8_UNORM:
+        return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R32G32_UINT:
+        return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+    case VK_FORMAT_R32G32B32A32_UINT:
+        return 16;
+    default:
+        assert(!"a format that no frame is made of");
+        return 0;
+    }
+}
 
 VkImageAspectFlags GpuImage::aspect() const
 {
@@ -317,20 +340,32 @@ void memoryBarrier(const Gpu& gpu, VkCommandBuffer cmd, VkPipelineStageFlags2 fr
 
 void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, const ImageTransition& change)
 {
-    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = change.fromStage;
-    barrier.srcAccessMask = change.written;
-    barrier.dstStageMask = change.toStage;
-    barrier.dstAccessMask = change.used;
-    barrier.oldLayout = change.from;
-    barrier.newLayout = change.to;
-    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image.handle();
-    barrier.subresourceRange = {image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    const GpuImage* const one[] = {&image};
+    transition(gpu, cmd, one, change);
+}
+
+void transition(const Gpu& gpu, VkCommandBuffer cmd, std::span<const GpuImage* const> images, const ImageTransition& change)
+{
+    std::array<VkImageMemoryBarrier2, 8> barriers{};
+    assert(images.size() <= barriers.size());
+    for (size_t i = 0; i < images.size(); ++i)
+    {
+        VkImageMemoryBarrier2& barrier = barriers[i];
+        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+        barrier.srcStageMask = change.fromStage;
+        barrier.srcAccessMask = change.written;
+        barrier.dstStageMask = change.toStage;
+        barrier.dstAccessMask = change.used;
+        barrier.oldLayout = change.from;
+        barrier.newLayout = change.to;
+        barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = images[i]->handle();
+        barrier.subresourceRange = {images[i]->aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    }
     VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    info.imageMemoryBarrierCount = 1;
-    info.pImageMemoryBarriers = &barrier;
+    info.imageMemoryBarrierCount = uint32_t(images.size());
+    info.pImageMemoryBarriers = barriers.data();
     gpu.vk.CmdPipelineBarrier2(cmd, &info);
 }
 

@@ -51,6 +51,9 @@ struct ImageDesc
     VkImageUsageFlags usage = 0;
 };
 
+/// Bytes of a texel in the formats that frames and bakes are made of; of another an assertion fails.
+uint32_t texelBytes(VkFormat format);
+
 /// An image with one view of all of it; move-only, as Buffer.
 class GpuImage
 {
@@ -61,6 +64,8 @@ public:
     VkImageView layerView(uint32_t layer) const { return layerViews[layer].get(); }
     const ImageDesc& desc() const { return made; }
     const char* what() const { return name; }
+    /// Of its first level, without what the device adds.
+    uint64_t bytes() const { return uint64_t(texelBytes(made.format)) * made.width * made.height * made.depth * made.layers; }
     VkImageAspectFlags aspect() const;
     explicit operator bool() const { return bool(image); }
 
@@ -166,5 +171,7 @@ struct ImageTransition
     VkAccessFlags2 written = 0, used = 0;
 };
 void transition(const Gpu& gpu, VkCommandBuffer cmd, const GpuImage& image, const ImageTransition& change);
+/// The same of several images, at most 8, by one barrier.
+void transition(const Gpu& gpu, VkCommandBuffer cmd, std::span<const GpuImage* const> images, const ImageTransition& change);
 
 } // namespace sconce

@@ -9,7 +9,8 @@
 // radiance is that picture (path_picture.h). Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
-layout(set = 1, binding = kTraceLightBinding, rgba32f) writeonly uniform image2D reflected;
+layout(constant_id = kUntintedId) const bool kUntinted = false; // as in trace_glossy.glsl
+layout(set = 1, binding = kTraceLightBinding, rgba16f) writeonly uniform image2D reflected;
 
 vec3 pathLight(ivec2 at, uint part)
 {
@@ -26,5 +27,6 @@ void main()
     vec3 light = pathLight(at, kTerm == kTermDiffuse ? 0u : 1u);
     // A filter works on what arrives: composition gives the texture back.
     if (kTerm == kTermDiffuse) light /= max(lobesAt(p.brdf, dot(p.normal, p.view)).diffuse, vec3(1e-4));
-    imageStore(reflected, at, vec4(light, 1.0));
+    if (kUntinted) light /= tintOf(p);
+    imageStore(reflected, at, storedLight(vec4(light, 1.0)));
 }

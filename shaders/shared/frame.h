@@ -34,6 +34,7 @@ const uint kTermGlossy = 2u; // reflections by traced rays
 const uint kTermMirror = 3u; // one traced ray, never filtered
 const uint kTermCount = 4u;
 
+const float kMostLight = 65504.0f; // radiance, in any unit: the largest half float; images of indirect light hold no more, and what has it may have been more
 const float kFilterReach = 15.0f; // pixels, of all steps of a term's filter together
 const float kNotTraced = -1.0f;   // in place of a ray's length: the pixel is made from its neighbours
 

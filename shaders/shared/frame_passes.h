@@ -10,6 +10,7 @@ const uint kNormalRoughnessBinding = 1u;
 const uint kBaseColorMetallicBinding = 2u;
 const uint kFrameBinding = 3u;
 const uint kTileBinding = 8u;
+const uint kPackedBinding = 13u; // packed_pixel.glsl
 const uint kMovingBinding = 12u; // shapes that move, of passes that ask them
 
 // Of each pass.
@@ -68,15 +69,17 @@ const uint kLampTermsId = 25u; // lamp_light.comp: bits of the terms that are ma
 const uint kLampEachId = 26u;  // lamp_light.comp
 const uint kMovingId = 27u;    // trace_glossy.comp: whether shapes move
 const uint kMovingBoxesId = 29u; // moving_light.comp: of boxes, else of round shapes
-const uint kSurfaceProbesId = 30u; // surface_light.comp
+const uint kSurfaceProbesId = 31u; // surface_light.comp
+const uint kUntintedId = 30u;    // trace_glossy.comp, reconstruct.comp: the filters after it work on light before the surface's tint, and give it back
 const uint kMovingLooksId = 28u; // moving_light.comp: the field has prefiltered radiance, which tells what a shape hides
 
 struct DenoisePush
 {
     int stride;          // pixels between taps
     int followRoughness; // 1: the reach shrinks with roughness, to nothing for a mirror
+    int last;            // 1: of a term's steps the last, which gives reflections their surface's tint
 };
-SCONCE_CHECK_SIZE(DenoisePush, 8);
+SCONCE_CHECK_SIZE(DenoisePush, 12);
 
 struct DirectPush
 {

@@ -4,9 +4,9 @@
 // The viewer's picture: one of a frame's, as colours of 8 bits. Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) readonly uniform image2D beauty; // radiance to the eye, as the next three
-layout(set = 0, binding = 1, rgba32f) readonly uniform image2D direct;
-layout(set = 0, binding = 2, rgba32f) readonly uniform image2D diffuseLayer;
-layout(set = 0, binding = 3, rgba32f) readonly uniform image2D glossyLayer;
+layout(set = 0, binding = 1, rgba16f) readonly uniform image2D direct; // over its a
+layout(set = 0, binding = 2, rgba16f) readonly uniform image2D diffuseLayer;
+layout(set = 0, binding = 3, rgba16f) readonly uniform image2D glossyLayer;
 layout(set = 0, binding = 4) uniform texture2D normalRoughness;
 layout(set = 0, binding = 5) uniform texture2D baseColorMetallic;
 layout(set = 0, binding = 6) uniform texture2D depthImage; // near / W; 0: nothing
@@ -64,7 +64,7 @@ vec3 linearView(ivec2 at)
     switch (view)
     {
     case 0u: return toneMapped(imageLoad(beauty, at).rgb);
-    case 1u: return toneMapped(imageLoad(direct, at).rgb);
+    case 1u: return toneMapped(imageLoad(direct, at).rgb * imageLoad(direct, at).a);
     case 2u: return toneMapped(imageLoad(diffuseLayer, at).rgb);
     case 3u: return toneMapped(imageLoad(glossyLayer, at).rgb);
     case 5u: return texelFetch(baseColorMetallic, at, 0).rgb;

@@ -70,12 +70,12 @@ Status Show::make(const FramePictures& pictures, uint32_t width, uint32_t height
     auto bound = DescriptorSet::create(*gpu, bindings);
     if (!bound) return bound.error();
     set = std::move(*bound);
-    // What isn't made isn't shown: anything may be bound in its place.
-    const auto orBeauty = [&](const GpuImage* image) { return (image ? image : pictures.beauty)->view(); };
+    // What isn't made isn't shown: anything of the format may be bound in its place.
+    const auto orDirect = [&](const GpuImage* image) { return (image ? image : pictures.direct)->view(); };
     for (auto [binding, view] : {std::pair{beautyBinding, pictures.beauty->view()},
                                  {directBinding, pictures.direct->view()},
-                                 {diffuseBinding, orBeauty(pictures.diffuseLayer)},
-                                 {glossyBinding, orBeauty(pictures.glossyLayer)},
+                                 {diffuseBinding, orDirect(pictures.diffuseLayer)},
+                                 {glossyBinding, orDirect(pictures.glossyLayer)},
                                  {countsBinding, (pictures.counts ? pictures.counts : &noCounts)->view()},
                                  {referenceBinding, reference.view()},
                                  {pictureBinding, picture.view()}})
