@@ -76,13 +76,17 @@ TEST(TracedPicture, FiltersTakeNoiseAndKeepLightAndMirrors)
         EXPECT_LT(*after->relMse, left * *before->relMse) << layer; // found: 0.077 and 0.269
         EXPECT_NEAR(*after->mean, *before->mean, 0.008) << layer;
     }
-    // A mirror is not filtered: what comes out of device, passes and composition is what went in.
+    // A mirror is not filtered: what comes out of device, passes and composition is what went in, to half of a half float's step.
     size_t mirrors = 0;
     for (size_t i = 0; i < frame.depth.size(); ++i)
     {
         if (!(frame.depth[i] > 0.0f && frame.roughness[i] == 0.0f)) continue;
         ++mirrors;
-        for (int c = 0; c < 3; ++c) EXPECT_EQ(frame.glossyIndirect[i][c], paths.find("glossy_indirect")->pixels[3 * i + size_t(c)]) << i;
+        for (int c = 0; c < 3; ++c)
+        {
+            const float given = paths.find("glossy_indirect")->pixels[3 * i + size_t(c)];
+            EXPECT_NEAR(frame.glossyIndirect[i][c], given, given / 2048.0f + 1e-7f) << i;
+        }
     }
     EXPECT_GT(mirrors, 100u);
 }
