@@ -14,7 +14,7 @@ run() # program, filter
     "$build/tests/properties/$1" --gtest_filter="$2" | tee /dev/stderr | { grep '^| ' || true; } >>"$rows"
 }
 run sconce_hard_cases_tests '*'
-run sconce_frame_tests 'TemporalTest.AMovingPicture*:FurnaceTest.*:SurfaceLightFrames.*'
+run sconce_frame_tests 'TemporalTest.AMovingPicture*:FurnaceTest.*:Streaming.*:SurfaceLightFrames.*'
 run sconce_command_properties_tests 'Independence.*'
 
 {
