@@ -305,7 +305,7 @@ public:
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
     // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; composeIndirect() there
-    // makes a picture of them. RGBA16F; light beyond gpu::kMostLight, 65,504, is stored as that.
+    // makes a picture of them. RGBA16F, in steps of 6e-8 at least; light beyond gpu::kMostLight, 65,504, is stored as that.
     uint32_t made() const;  // bits 1 << gpu::kTermDiffuse... of the terms whose images aren't null
     Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it
                             // is read from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or

@@ -52,10 +52,11 @@ ProbeHeader probeHeader(uint probe)
 #endif
 // Of a field that streams not all maps are on the device. A compute pass that defines SCONCE_ASKS_FOR_MAPS before it includes this tells FieldStream which it
 // would read, and how often: one of eight invocations does.
-uint slotOf(uint probe) { return streams() ? texelFetch(sconceSlots, int(probe)).x : probe; }
-bool holdsMaps(uint probe) { return slotOf(probe) != kNoProbe; }
+uint slotOf(uint probe) { return texelFetch(sconceSlots, int(probe)).x; }
+bool holdsMaps(uint probe) { return !streams() || slotOf(probe) != kNoProbe; }
 uint mapSlot(uint probe) // in the field even of maps that aren't there, which nobody should read
 {
+    if (!streams()) return probe;
     uint slot = slotOf(probe);
     return slot == kNoProbe ? 0u : slot;
 }

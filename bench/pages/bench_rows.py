@@ -474,7 +474,7 @@ def flights(arguments):
     rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
     write("streaming.json", "A camera that flies from probe to probe through a field whose maps come from its file, against the whole field", ["bench/pages/stream_table.sh"],
           ["error: root of the mean squared difference of indirect light, % of its mean; light: ratio of the means, of the worst frames",
-           "settled: of the scene's first view once what it asks for has come, FLIP and mean over those of the whole field; 320x180, 200 frames at 60 a second, at most 2 probes copied in one; mib: of the field on the device, with what is on its way; read: probes from the file",
+           "settled: of the scene's first view once what it asks for has come, FLIP and mean over those of the whole field; 320x180, 100 frames at 60 a second, at most 2 probes copied in one; mib: of the field on the device, with what is on its way; read: probes from the file",
            "missing: of the probes that pixels and rays asked for; cut: frames until the error is below a tenth where the flight begins without a map on the device, and the first one's light"], rows)
 
 

@@ -2,12 +2,12 @@
 # A light field whose maps come from its file while a camera flies through it, with room for 1/2 to 1/8 of its probes and at three speeds, against the
 # whole field, and a picture that has settled: writes bench/results/streaming.json.
 # stream_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE, FLY=the command and sconce_fly_through, built when not given,
-# SHARES=one of so many probes ["2 4 8"], SPEEDS=m/s ["10 40 100"], FRAMES=n [200], RESOLUTION=texels [256], OUT=folder, whose fields are kept [out/stream].
+# SHARES=one of so many probes ["2 4 8"], SPEEDS=m/s ["10 40 100"], FRAMES=n [100], RESOLUTION=texels [256], OUT=folder, whose fields are kept [out/stream].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source bench/pages/views.sh
 scenes=${SCONCE_SCENES:-../shared/scenes}
-out=${OUT:-out/stream} frames=${FRAMES:-200} resolution=${RESOLUTION:-256}
+out=${OUT:-out/stream} frames=${FRAMES:-100} resolution=${RESOLUTION:-256}
 [[ -n ${SCONCE:-} && -n ${FLY:-} ]] || tools/build.sh release sconce_command sconce_fly_through >&2
 sconce=${SCONCE:-build/release/tools/sconce} fly=${FLY:-build/release/bench/race/sconce_fly_through}
 list=("$@")

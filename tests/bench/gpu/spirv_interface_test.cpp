@@ -51,7 +51,7 @@ TEST(SpirvInterface, KnowsImagesAndBuffersThatAreWritten)
         images += one.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
         buffers += one.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     }
-    EXPECT_EQ(images, 2u) << "light and counts";
+    EXPECT_EQ(images, 3u) << "light, counts and packed pixels";
     EXPECT_GE(buffers, 1u) << "the tiles";
 }
 
