@@ -49,9 +49,9 @@ struct IndirectLight::State
     void setInputs(const FrameInputs& inputs);
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept;
     uint64_t deviceBytes() const;
-    /// Whether diffuse light is read from the field's surface light, which has no noise and all sources but the host's in it.
     /// Where the mirror's light is: in the glossy image, where passes write the pixels of their term alone, for no pixel has both.
     const GpuImage& mirrored() const { return mirrorsInGlossy() ? glossyImage : mirrorImage; }
+    /// Whether diffuse light is read from the field's surface light, which has no noise and all sources but the host's in it.
     bool readsSurfaces() const { return readsSurfaceLight(desc.effects, field.info()); }
 
 private:
