@@ -141,6 +141,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(tolerance),
                                               rowOf(epsilon),
                                               rowOf(farBounds),
+                                              rowOf(order),
                                               rowOf(paths),
                                               rowOf(pathsUntil),
                                               rowOf(pathBounces),

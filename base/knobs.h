@@ -724,6 +724,16 @@ inline constexpr Knob<int> farBounds{.name = "farBounds",
                                      .what = "1: reads the far bounds, too, and ends early behind them",
                                      .buys = "steps for reads; the results are the same"};
 
+inline constexpr Knob<int> order{
+    .name = "order",
+    .member = "Quality::trace.order",
+    .value = 0,
+    .least = 0,
+    .most = 3,
+    .what = "Which of a leaf's probes a ray asks first. 0: as they are ranked; 1: to or from which it runs most straight; 2: from which it "
+            "does; 3: that stands nearest to its line",
+    .buys = "nothing: orders of the papers, to compare with (docs/accuracy.md)"};
+
 // ---- the reference
 
 inline constexpr Knob<uint32_t> paths{.name = "samples",

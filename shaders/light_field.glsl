@@ -36,6 +36,7 @@ bool holdsRefined() { return (kFieldFlags & kHoldsRefined) != 0u; }
 bool holdsPrefiltered() { return (kFieldFlags & kHoldsPrefiltered) != 0u; }
 bool holdsLive() { return (kFieldFlags & kHoldsLive) != 0u; }
 bool streams() { return (kFieldFlags & kStreams) != 0u; }
+int probeOrder() { return int((kFieldFlags >> kOrderShift) & 3u); }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form, or none.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;

@@ -44,6 +44,7 @@ Status setKnobs(Tracer& how, const std::string& knobs)
         {"startLevel", &quality.startLevel}, {"coarsestLevel", &quality.coarsestLevel},
         {"tolerance", &quality.tolerance},   {"epsilon", &quality.epsilon},
         {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds},
+        {"order", &quality.order},
         {"octahedral", &octahedral},         {"distanceBits", &how.distanceBits}};
     std::istringstream list(knobs);
     for (std::string knob; std::getline(list, knob, ',');)
@@ -54,7 +55,7 @@ Status setKnobs(Tracer& how, const std::string& knobs)
         if (found == std::end(known))
             return Error{ErrorCode::badArgument,
                          fmt::format("'{}' is no knob of the tracer; give ranked, maxHandoffs, startLevel, coarsestLevel, tolerance, "
-                                     "epsilon, opinion, farBounds, octahedral or distanceBits",
+                                     "epsilon, opinion, farBounds, order, octahedral or distanceBits",
                                      name)};
         const char* begin = knob.data() + std::min(colon + 1, knob.size());
         const char* end = knob.data() + knob.size();

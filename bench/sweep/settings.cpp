@@ -103,6 +103,7 @@ std::vector<SweptKnob> makeKnobs()
         knob("tolerance", trace, ours, {"0.25", "0.5", "1", "2", "4"}, knobs::tolerance, SCONCE_FIELD(quality.trace.tolerance)),
         knob("opinion", trace, ours, {"0", "0.001", "0.002", "0.01"}, knobs::opinion, SCONCE_FIELD(quality.trace.opinion)),
         knob("far bounds", trace, ours, {"0", "1"}, knobs::farBounds, SCONCE_FIELD(quality.trace.farBounds)),
+        knob("order", trace, ours, {"0", "1", "2", "3"}, knobs::order, SCONCE_FIELD(quality.trace.order)),
         knob("rays", frame, tracers, {"1", "2", "4", "8"}, knobs::glossyRays, SCONCE_FIELD(frame.glossyRays)),
         knob("trace every", frame, tracers, {"1", "2", "4", "8", "16"}, knobs::traceEvery, SCONCE_FIELD(frame.traceEvery)),
         knob("surface probes", frame, fields, {"1", "2"}, knobs::surfaceProbes, SCONCE_FIELD(frame.surfaceProbes)),

@@ -22,7 +22,8 @@ std::string checkQuality(const gpu::TraceQuality& q)
     const std::string fault =
         firstFault({faultOf(knobs::ranked, q.ranked), faultOf(knobs::maxHandoffs, q.maxHandoffs), faultOf(knobs::startLevel, q.startLevel),
                     faultOf(knobs::coarsestLevel, q.coarsestLevel), faultOf(knobs::tolerance, q.tolerance),
-                    faultOf(knobs::epsilon, q.epsilon), faultOf(knobs::opinion, q.opinion), faultOf(knobs::farBounds, q.farBounds)});
+                    faultOf(knobs::epsilon, q.epsilon), faultOf(knobs::opinion, q.opinion), faultOf(knobs::farBounds, q.farBounds),
+                    faultOf(knobs::order, q.order)});
     return fault.empty() ? fault : fmt::format("quality: {}", fault);
 }
 
@@ -211,6 +212,7 @@ Status LightField::State::setQuality(const Quality& quality)
 {
     if (const std::string wrong = checkQuality(quality.trace); !wrong.empty()) return Error{ErrorCode::badArgument, wrong};
     readsFarBounds = quality.trace.farBounds != 0;
+    probeOrder = uint32_t(quality.trace.order);
     const gpu::FieldBlock values{info,
                                  quality.trace,
                                  distance.address(),
@@ -242,7 +244,7 @@ VkDescriptorSet LightField::descriptorSet() const
 std::array<uint32_t, 2> LightField::constants() const
 {
     std::array<uint32_t, 2> values{};
-    values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) |
+    values[gpu::kFieldFlagsId] = (shared->readsFarBounds ? gpu::kReadsFarBounds : 0u) | (shared->probeOrder << gpu::kOrderShift) |
                                  (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
                                  (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
                                  (shared->maps ? gpu::kStreams : 0u) | (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u) |

@@ -30,6 +30,7 @@ struct LightField::State
     Buffer liveIncident, liveAlbedo; // of LiveLight, which passes that it was made before go on reading; none: light is static
     vec3 radianceWeight{1.0f};       // see gpu::FieldBlock
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
+    uint32_t probeOrder = 0; // TraceQuality::order
     GpuImage octree;
     std::unique_ptr<MapPool> maps; // null: the maps of all probes are there
     DescriptorSet set;

@@ -33,6 +33,9 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     static constexpr uint kChartCube = gpu::kChartCube;
     static constexpr uint kIrradianceSize = gpu::kIrradianceSize;
     static constexpr int kRanked = gpu::kRanked;
+    static constexpr int kOrderRanked = gpu::kOrderRanked;
+    static constexpr int kOrderParallel = gpu::kOrderParallel;
+    static constexpr int kOrderBehind = gpu::kOrderBehind;
     static constexpr uint kCellWords = gpu::kCellWords;
     static constexpr uint kCellKnown = gpu::kCellKnown;
     static constexpr uint kHiddenShiftBits = gpu::kHiddenShiftBits;
@@ -66,6 +69,10 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     bool readsFarBounds() const
     {
         return quality.farBounds != 0;
+    }
+    int probeOrder() const
+    {
+        return quality.order;
     }
     bool onOctahedron() const
     {

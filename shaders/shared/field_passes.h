@@ -23,6 +23,7 @@ const uint kHoldsRefined = 8u; // some texels of the surface light are refined
 const uint kHoldsPrefiltered = 32u; // there is prefiltered radiance
 const uint kHoldsLive = 16u; // rays find live light (live_light.h), besides the radiance that is baked
 const uint kStreams = 64u; // the maps of some probes are not on the device (FieldStream)
+const uint kOrderShift = 7u; // of the two bits that hold TraceQuality::order
 const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 
 // The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.
@@ -45,7 +46,7 @@ struct FieldBlock
 {
     SCONCE_FIELD_BLOCK
 };
-SCONCE_CHECK_SIZE(FieldBlock, 312);
+SCONCE_CHECK_SIZE(FieldBlock, 320);
 #endif
 
 SCONCE_STRUCTS_END

@@ -87,8 +87,18 @@ struct TraceQuality
     float epsilon;     // absolute slack, share of the scene's diagonal
     float opinion;     // a hit in a texel larger than this share of the diagonal is asked of a nearer probe; 0: never
     int farBounds;     // 1: read the far bounds, and end early where a ray is behind all of a cell; 0: leave them alone
+    int order;         // kOrder...: which of a leaf's probes is asked first
+    int unused;        // addresses that follow are at multiples of 8 bytes
 };
-SCONCE_CHECK_SIZE(TraceQuality, 32);
+SCONCE_CHECK_SIZE(TraceQuality, 40);
+
+// Orders in which a leaf's probes are asked: as they are ranked; by how parallel the ray is to the way from the probe to the point it has come to, either
+// sign or only away from the probe (Donow 2016, "Light Probe Selection Algorithms for Real-Time Rendering of Light Fields", sections 5.5 and 5.7); by
+// how near a probe stands to the ray's line.
+const int kOrderRanked = 0;
+const int kOrderParallel = 1;
+const int kOrderBehind = 2;
+const int kOrderNearestLine = 3;
 
 /// A ray and its answer, as `trace_rays.comp` reads and writes them; world space, metres.
 struct Ray

@@ -1,6 +1,6 @@
 // The tracer: one ray through the light field. Shared text: GLSL, or C++ inside a struct that names `real` and holds
 // `field` (LightFieldInfo), `quality` (TraceQuality), and defines ProbeHeader probeHeader(uint), uint distanceWord(uint), octreeTexel(),
-// bool readsFarBounds(), bool onOctahedron().
+// bool readsFarBounds(), int probeOrder(), bool onOctahedron().
 //
 // What one probe can't tell of a ray (UNKNOWN, face_march.h) is handed to the next probe of the octree's leaf at that point, with the ray
 // re-entered BEFORE the cell that blocked it, so that the next probe misses nothing (Donow 2016, section on back faces).
@@ -128,8 +128,20 @@ SCONCE_FN bool mayAskOn(SCONCE_INOUT(RayState) r)
     return true;
 }
 
+/// How early a probe is asked, of those of a leaf: the largest first.
+/// @param way  from the probe to the point that the ray has come to
+SCONCE_FN real sayInOrder(vec3 way, vec3 direction)
+{
+    if (probeOrder() == kOrderRanked) return real(0.0); // the first of the list is the first
+    real along = dot(way, direction);
+    real squared = dot(way, way) + real(1e-20);
+    if (probeOrder() == kOrderParallel) return along * along / squared;
+    if (probeOrder() == kOrderBehind) return along * abs(along) / squared;
+    return along * along - squared;
+}
+
 /// The probe to ask; kNoProbe: none is left. For a second opinion the one of the leaf at the hit that stands nearest of those that stand nearer,
-/// and before the surface. Else the first of the leaf's list at the point reached that wasn't tried, then of the lists a little further on; at
+/// and before the surface. Else the first in order of the leaf's list at the point reached that wasn't tried, then of the lists a little further on; at
 /// its start a ray asks those of a list that stand before the surface it starts on first: to one behind a thin sheet the start would look like
 /// a place on its own side.
 /// One search for both, since what is written twice is in the program twice.
@@ -147,6 +159,8 @@ SCONCE_FN uint searchLeaves(SCONCE_INOUT(RayState) r, bool opinion)
     {
         real ahead = opinion ? kLookBack : lookAhead(list);
         uint behind = kNoProbe;
+        real say = real(0.0);
+        real sayBehind = real(0.0);
         uvec4 ranked = rankedProbesAt(pointAt(r.ray, r.t + ahead * real(field.voxel)), r.cost.indexReads);
         for (int k = 0; k < kRanked; ++k) // a constant bound: unrolled
         {
@@ -168,11 +182,20 @@ SCONCE_FN uint searchLeaves(SCONCE_INOUT(RayState) r, bool opinion)
                     found = ranked[k];
                 }
             }
-            else if (found == kNoProbe && !tried)
+            else if (!tried)
             {
                 bool faces = !starts || dot(centre - r.ray.origin, r.ray.normal) >= real(0.0);
-                if (faces) found = ranked[k];
-                else if (behind == kNoProbe) behind = ranked[k];
+                real its = sayInOrder(pointAt(r.ray, r.t) - centre, r.ray.direction);
+                if (faces && (found == kNoProbe || its > say))
+                {
+                    found = ranked[k];
+                    say = its;
+                }
+                else if (!faces && (behind == kNoProbe || its > sayBehind))
+                {
+                    behind = ranked[k];
+                    sayBehind = its;
+                }
             }
         }
         if (found == kNoProbe) found = behind;

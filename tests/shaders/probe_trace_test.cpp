@@ -1,5 +1,7 @@
 // The tracer's shared text on the CPU, against Embree, closed forms and itself in double precision. Maps are cast by Embree.
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -169,6 +171,52 @@ TEST(ProbeTrace, FarBoundsChangeReadsAndNothingElse)
     }
     EXPECT_EQ(different, 0u);
     EXPECT_GT(reads, set.size() / 100) << "the far bounds were not read";
+}
+
+/// How early an order asks a probe, by angles and distances in double precision: the smallest first.
+double turnOf(int order, glm::dvec3 centre, glm::dvec3 at, glm::dvec3 direction)
+{
+    const double angle = std::acos(glm::dot(glm::normalize(at - centre), direction)); // of the ray off the way from the probe
+    if (order == gpu::kOrderParallel) return std::min(angle, std::numbers::pi - angle);
+    if (order == gpu::kOrderBehind) return angle;
+    return glm::length(glm::cross(centre - at, direction));
+}
+
+// In an empty room each probe sees where a ray ends, so that the first that is asked answers.
+TEST(ProbeTrace, OrdersAskFirstWhoTheyName)
+{
+    const std::vector<vec3> probes = {{0.4f, 0.3f, 0.2f}, {-0.5f, 0.2f, 0.1f}, {0.1f, -0.4f, -0.3f}, {-0.3f, -0.2f, 0.4f}};
+    Traced traced(closedBox(1.0f), probes, 128);
+    const gpu::LightFieldInfo& info = traced.field.info;
+    gpu::TraceQuality quality = defaultQuality();
+    quality.opinion = 0.0f;
+    for (const int order : {gpu::kOrderParallel, gpu::kOrderBehind, gpu::kOrderNearestLine})
+    {
+        quality.order = order;
+        twin::LightFieldTwin<float> text(traced.field, quality);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> across(-0.9f, 0.9f);
+        int asked = 0, notRanked = 0;
+        for (int i = 0; i < 5000; ++i)
+        {
+            const vec3 origin = vec3(across(random), 0.8f * across(random), 0.6f * across(random)), direction = randomDirection(random);
+            const auto hit = text.queryRay(origin, direction);
+            if (hit.handoffs > 0 || hit.status != 1u) continue;
+            int reads = 0;
+            const vec3 start = (origin - vec3(info.origin)) / info.scale;
+            const glm::uvec4 list = text.rankedProbesAt(start + text.lookAhead(0) * info.voxel * direction, reads);
+            std::vector<std::pair<double, uint32_t>> turns;
+            for (int k = 0; k < gpu::kRanked; ++k) turns.push_back({turnOf(order, probes[list[k]], origin, direction), list[k]});
+            std::ranges::sort(turns);
+            const auto other = std::ranges::find_if(turns, [&](const auto& turn) { return turn.second != turns[0].second; });
+            if (other != turns.end() && other->first - turns[0].first < 1e-4) continue; // float may turn those about
+            ++asked;
+            notRanked += turns[0].second != list[0];
+            ASSERT_EQ(hit.probe, turns[0].second) << "order " << order << ", ray " << i;
+        }
+        EXPECT_GT(asked, 4500);
+        EXPECT_GT(notRanked, 1000) << "the order is the list's own";
+    }
 }
 
 // A wall of small steps far from one probe and near another: the far one's texels are as large as the steps.

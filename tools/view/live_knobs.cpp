@@ -139,7 +139,8 @@ std::vector<LiveKnob> makeLiveKnobs()
             live<int>(knobs::coarsestLevel, SCONCE_AT(quality.trace.coarsestLevel)),
             live<float>(knobs::tolerance, SCONCE_AT(quality.trace.tolerance)),
             live<float>(knobs::epsilon, SCONCE_AT(quality.trace.epsilon)),
-            live<int>(knobs::farBounds, SCONCE_AT(quality.trace.farBounds))};
+            live<int>(knobs::farBounds, SCONCE_AT(quality.trace.farBounds)),
+            live<int>(knobs::order, SCONCE_AT(quality.trace.order))};
 }
 
 } // namespace

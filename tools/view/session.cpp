@@ -181,7 +181,8 @@ Status Session::apply(const ViewKnobs& knobs, const LightChoice& light, uint32_t
     if (!sameQuality(knobs.quality, quality))
     {
         if (Status set = lightField->setQuality(knobs.quality); !set) return set;
-        if (knobs.quality.trace.farBounds != quality.trace.farBounds) dropRenderer(); // which is fixed in a pass when it is made
+        const gpu::TraceQuality &wanted = knobs.quality.trace, &had = quality.trace;
+        if (wanted.farBounds != had.farBounds || wanted.order != had.order) dropRenderer(); // which are fixed in a pass when it is made
         quality = knobs.quality;
     }
     if (!renderer || !sameRenderer(*settings, drawn))

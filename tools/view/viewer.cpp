@@ -34,7 +34,7 @@ double now()
 bool sameKnobs(const ViewKnobs& a, const ViewKnobs& b)
 {
     const auto tied = [](const gpu::TraceQuality& t)
-    { return std::tie(t.ranked, t.maxHandoffs, t.startLevel, t.coarsestLevel, t.tolerance, t.epsilon, t.opinion, t.farBounds); };
+    { return std::tie(t.ranked, t.maxHandoffs, t.startLevel, t.coarsestLevel, t.tolerance, t.epsilon, t.opinion, t.farBounds, t.order); };
     return a.frame == b.frame && a.normalOffset == b.normalOffset && tied(a.quality.trace) == tied(b.quality.trace);
 }
 

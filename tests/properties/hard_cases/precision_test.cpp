@@ -1,6 +1,7 @@
 // One text, three machines: float against double on the CPU, and the device against float.
 #include <string_view>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "runtime/field/light_field.h"
@@ -59,17 +60,20 @@ TEST_P(Precision, FloatAnswersLikeDouble)
 INSTANTIATE_TEST_SUITE_P(Scenes, Precision, testing::Values("cornell", "temple", "curtains", "town", "sponza"),
                          [](const auto& scene) { return std::string(scene.param); });
 
-class PrecisionOnDevice : public DeviceTest
+/// By the order in which probes are asked: gpu::kOrder...
+class PrecisionOnDevice : public DeviceTest, public testing::WithParamInterface<int>
 {
 };
 
-TEST_F(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
+TEST_P(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
 {
     const auto scene = hardScene("curtains");
     FieldData& field = scene->field;
     field.irradiance.assign(size_t(field.info.probeCount) * kIrradianceWordsPerProbe, 0);
     const RaySet set = glossyRaysOf(*scene, kRays);
-    auto device = makeLightField(gpu(), field);
+    Quality quality;
+    quality.trace.order = GetParam();
+    auto device = makeLightField(gpu(), field, quality);
     ASSERT_TRUE(device) << device.error().message;
     auto tracer = makeRayTracer(gpu(), *device);
     ASSERT_TRUE(tracer) << tracer.error().message;
@@ -77,7 +81,7 @@ TEST_F(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
     for (size_t i = 0; i < rays.size(); ++i) rays[i] = {set.origins[i], set.directions[i], i % 2 == 0 ? set.normals[i] : glm::vec3(0.0f)};
     std::vector<gpu::RayHit> hits(rays.size());
     ASSERT_TRUE(tracer->trace(rays, hits));
-    twin::LightFieldTwin<float> text(field, defaultQuality());
+    twin::LightFieldTwin<float> text(field, quality.trace);
     size_t integers = 0, far = 0;
     for (size_t i = 0; i < rays.size(); ++i)
     {
@@ -87,9 +91,13 @@ TEST_F(PrecisionOnDevice, AnswersLikeFloatOnTheCpu)
         integers += !same;
         far += same && std::abs(cpu.t - hits[i].t) > 2e-5f * cpu.t;
     }
-    expectAtMost("device against float, curtains: share with another integer", rays.size(), double(integers) / kRays, kHardlyAny, 0.0);
-    expectAtMost("device against float, curtains: share with t off by over 2e-5", rays.size(), double(far) / kRays, kHardlyAny, 0.0);
+    const std::string name = fmt::format("device against float, curtains{}", GetParam() == 0 ? "" : fmt::format(", order {}", GetParam()));
+    expectAtMost(name + ": share with another integer", rays.size(), double(integers) / kRays, kHardlyAny, 0.0);
+    expectAtMost(name + ": share with t off by over 2e-5", rays.size(), double(far) / kRays, kHardlyAny, 0.0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Orders, PrecisionOnDevice,
+                         testing::Values(gpu::kOrderRanked, gpu::kOrderParallel, gpu::kOrderBehind, gpu::kOrderNearestLine));
 
 } // namespace
 } // namespace sconce

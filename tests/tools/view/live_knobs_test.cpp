@@ -54,7 +54,8 @@ TEST(LiveKnobs, WhatIsSetIsReadAndChangesNothingElse)
         {"surfaceProbes", "1"}, {"traceEvery", "8"},       {"raysBelow", "0.7"},   {"roughness", "0"},       {"denoise", "off"},
         {"temporal", "on"},     {"normalOffset", "0.001"}, {"seed", "4000000000"}, {"ranked", "2"},          {"opinion", "0.01"},
         {"maxHandoffs", "0"},   {"startLevel", "6"},       {"coarsestLevel", "2"}, {"tolerance", "0.5"},     {"epsilon", "0.001"},
-        {"farBounds", "1"}};
+        {"farBounds", "1"},
+        {"order", "3"}};
     EXPECT_EQ(std::size(values), liveKnobs().size());
     for (const auto& [name, value] : values)
     {
