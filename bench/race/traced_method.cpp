@@ -44,8 +44,8 @@ Status setKnobs(Tracer& how, const std::string& knobs)
         {"startLevel", &quality.startLevel}, {"coarsestLevel", &quality.coarsestLevel},
         {"tolerance", &quality.tolerance},   {"epsilon", &quality.epsilon},
         {"opinion", &quality.opinion},       {"farBounds", &quality.farBounds},
-        {"order", &quality.order},
-        {"octahedral", &octahedral},         {"distanceBits", &how.distanceBits}};
+        {"order", &quality.order},           {"octahedral", &octahedral},
+        {"distanceBits", &how.distanceBits}};
     std::istringstream list(knobs);
     for (std::string knob; std::getline(list, knob, ',');)
     {

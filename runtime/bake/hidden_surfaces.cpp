@@ -18,9 +18,12 @@ namespace
 
 constexpr double kPointsOfVoxel = 8.0; // of a surface that is as large as a voxel's face
 constexpr double kMostPoints = 4e6;    // voxels are larger where there were more
-constexpr uint32_t kPlacesOfKey = 4;   // that are gathered at
-constexpr uint32_t kRaysOfPlace = 16;
+constexpr uint32_t kPlacesOfKey = 8;   // that are gathered at
+constexpr uint32_t kTriedLog = 5;      // log2 of those that are asked, to find them
+constexpr uint32_t kTriedStep = 13;    // from one to the next: coprime, so that all have their turn, and the first lie far apart
+constexpr uint32_t kRaysOfPlace = 8;
 constexpr float kLeastOpen = 1e-3f;       // weight of a place
+constexpr float kTight = 0.5f;            // of a voxel: what is no further from what is about it may be sealed up
 constexpr size_t kMostKeysOfProbe = 1024; // voxels are larger where there were more
 constexpr double kMostKeys = 2147483648.0;
 constexpr uint64_t kHiddenStream = 19; // of random numbers
@@ -147,9 +150,9 @@ uint32_t lightOf(std::span<const Place> places, float side, Text& text, const Tr
     vec3 sum(0.0f);
     float weights = 0.0f;
     bool meets = false, enclosed = true;
-    for (uint32_t i = 0; i < std::min<size_t>(places.size(), kPlacesOfKey); ++i)
+    for (uint32_t i = 0; i < places.size(); ++i)
     {
-        const Place& place = places[i * places.size() / std::min<size_t>(places.size(), kPlacesOfKey)];
+        const Place& place = places[i];
         const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
         if (!got.known) continue;
         const float weight = std::clamp(got.reach / side, kLeastOpen, 1.0f);
@@ -200,8 +203,46 @@ std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const ui
     }
 }
 
-/// All places, and how large the voxels of their keys are.
-HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles)
+/// Of one key's places at most kPlacesOfKey: of some all over the voxel those that are open, or whose rays meet what a probe sees, since
+/// nobody looks at what is sealed up behind them, in a moulding or between two layers of a wall; where there is none, any.
+/// @param side  of the voxel, field units
+std::vector<Place> chosenOf(std::span<const Place> places, float side, const TriangleGather& triangles, std::span<const uint32_t> sent)
+{
+    std::vector<Place> chosen;
+    const size_t tried = std::min<size_t>(places.size(), size_t(1) << kTriedLog);
+    for (uint32_t turn = 0; turn < 1u << kTriedLog && chosen.size() < kPlacesOfKey; ++turn)
+    {
+        const uint32_t i = (turn * kTriedStep) % (1u << kTriedLog); // far from those before it
+        if (i >= tried) continue;
+        const Place& place = places[i * places.size() / tried];
+        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
+        if (got.known && (got.meetsSeen || got.reach > kTight * side)) chosen.push_back(place);
+    }
+    const size_t any = chosen.empty() ? std::min<size_t>(places.size(), kPlacesOfKey) : 0;
+    for (size_t i = 0; i < any; ++i) chosen.push_back(places[i * places.size() / any]);
+    return chosen;
+}
+
+void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent)
+{
+    const float side = lit.info.voxel * float(1u << of.shift);
+    std::vector<std::vector<Place>> chosen(of.keys.size());
+    parallelFor(chosen.size(),
+                [&](size_t i)
+                {
+                    const auto [first, end] = of.keys[i];
+                    chosen[i] = chosenOf(std::span(of.places).subspan(first, end - first), side, triangles, sent);
+                });
+    of.places.clear();
+    for (size_t i = 0; i < chosen.size(); ++i)
+    {
+        of.keys[i] = {of.places.size(), of.places.size() + chosen[i].size()};
+        of.places.insert(of.places.end(), chosen[i].begin(), chosen[i].end());
+    }
+}
+
+/// The places that light is gathered at, and how large the voxels of their keys are.
+HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent)
 {
     const Scene& scene = triangles.scene();
     double area = 0.0;
@@ -218,6 +259,7 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles)
         found.keys = sortByKey(found.places, lit, triangles.offset());
     }
     found.shift = std::exchange(lit.info.hidden, 0u); // that look-ups do without
+    choosePlaces(found, lit, triangles, sent);
     return found;
 }
 
@@ -260,7 +302,7 @@ void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::s
     std::optional<HiddenPlaces> own;
     std::optional<HiddenPlaces>& of = places ? *places : own;
     const bool known = of.has_value();
-    if (!known) of = findPlaces(lit, triangles);
+    if (!known) of = findPlaces(lit, triangles, sent);
     std::vector<uint32_t> light = lightOfKeys(lit, *of, triangles, sent);
     if (known)
         std::ranges::replace(light, 0u, Text::kBlackWord); // in the light that found the places there is some

@@ -19,11 +19,10 @@ namespace
 
 std::string checkQuality(const gpu::TraceQuality& q)
 {
-    const std::string fault =
-        firstFault({faultOf(knobs::ranked, q.ranked), faultOf(knobs::maxHandoffs, q.maxHandoffs), faultOf(knobs::startLevel, q.startLevel),
-                    faultOf(knobs::coarsestLevel, q.coarsestLevel), faultOf(knobs::tolerance, q.tolerance),
-                    faultOf(knobs::epsilon, q.epsilon), faultOf(knobs::opinion, q.opinion), faultOf(knobs::farBounds, q.farBounds),
-                    faultOf(knobs::order, q.order)});
+    const std::string fault = firstFault(
+        {faultOf(knobs::ranked, q.ranked), faultOf(knobs::maxHandoffs, q.maxHandoffs), faultOf(knobs::startLevel, q.startLevel),
+         faultOf(knobs::coarsestLevel, q.coarsestLevel), faultOf(knobs::tolerance, q.tolerance), faultOf(knobs::epsilon, q.epsilon),
+         faultOf(knobs::opinion, q.opinion), faultOf(knobs::farBounds, q.farBounds), faultOf(knobs::order, q.order)});
     return fault.empty() ? fault : fmt::format("quality: {}", fault);
 }
 

@@ -103,6 +103,45 @@ TEST_F(HiddenSurfaces, TheFloorUnderASlabHasItsOwnLight)
                    std::to_string(off / all) + " " + std::to_string(offWithout / all) + " " + std::to_string(sum / all));
 }
 
+// The same of a floor on five others, two millimetres apart: of each the upper side faces as the floor does, and nothing comes there.
+TEST_F(HiddenSurfaces, WhatIsSealedUpBehindASurfaceDoesNotDarkenIt)
+{
+    constexpr int kLayers = 6;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t black = mesh.material("black", vec3(0.01f), 1.0f);
+    scene.sky = vec3(1.0f);
+    for (int i = 0; i < kLayers; ++i)
+    {
+        const float y = -0.002f * float(i);
+        mesh.quad(vec3(-4.0f, y, 4.0f), vec3(4.0f, y, 4.0f), vec3(4.0f, y, -4.0f), vec3(-4.0f, y, -4.0f), black);
+    }
+    mesh.box(vec3(-1.0f, kGap, -1.0f), vec3(1.0f, kGap + 1.0f, 1.0f), black);
+    const FieldData field = bake(scene, {vec3(0.0f, 2.5f, 0.0f), vec3(2.5f, 2.5f, 0.3f)});
+    const auto rays = TriangleRays::build(scene);
+    Random random(9, 0);
+    double all = 0.0, sum = 0.0;
+    int hidden = 0, dark = 0;
+    for (int i = 0; i < 400; ++i)
+    {
+        const vec2 at = 1.9f * random.uniform2() - 0.95f;
+        const vec3 place(at.x, 0.0f, at.y), up(0, 1, 0), point = (place - field.info.origin) / field.info.scale;
+        int reads = 0;
+        const auto found =
+            twin::LightFieldTwin<float>(field, {}).surfaceLightAt(point, up, up, point + 0.5f * field.info.voxel * up, reads);
+        if (found.probes > 0) continue;
+        const double truth = skyAt(*rays, place, random);
+        ++hidden;
+        dark += double(found.light.g) < 0.1 * truth;
+        sum += double(found.light.g);
+        all += truth;
+    }
+    ASSERT_GT(hidden, 200);
+    EXPECT_NEAR(sum / all, 1.0, 0.1);
+    EXPECT_LE(dark, hidden / 12) << "where chance found nothing but what is sealed up";
+    RecordProperty("dark of hidden; mean", std::to_string(dark) + " " + std::to_string(hidden) + " " + std::to_string(sum / all));
+}
+
 // A sealed room between lit ones, whose light is all that probes know.
 TEST_F(HiddenSurfaces, ADarkRoomStaysDark)
 {
