@@ -425,6 +425,7 @@ struct Gatherer : LightFieldTwin<float>
         return kLinkSurface;
     }
 
+    static constexpr float kOffWall = 0.75f; // voxels: nearer to its own wall a probe behind that may seem to see a point
     /// Whether some of a place's rays end at a texel, or pass through the open before a probe on their way to the sky.
     bool meetsSeen(vec3 point, vec3 normal, uvec2 sample, std::span<const uint32_t> ends, float grazing)
     {
@@ -433,8 +434,9 @@ struct Gatherer : LightFieldTwin<float>
         {
             if (ends[i] < kLinkDark) return true;
             if (ends[i] != kLinkSky) continue;
+            const vec3 direction = gatherDirection(tangents, sample, i, grazing);
             for (const float voxels : {2.0f, 6.0f})
-                if (isSeen(point + voxels * field.voxel * gatherDirection(tangents, sample, i, grazing))) return true;
+                if (voxels * dot(direction, normal) > kOffWall && isSeen(point + voxels * field.voxel * direction)) return true;
         }
         return false;
     }

@@ -50,12 +50,12 @@ TEST(LiveKnobs, BeginAtTheDefaultsOfTheLibrary)
 TEST(LiveKnobs, WhatIsSetIsReadAndChangesNothingElse)
 {
     const std::pair<const char*, const char*> values[] = {
-        {"exposure", "2.5"},    {"glossyRays", "4"},       {"diffuse", "traced"},  {"areaShadows", "field"}, {"areaSamples", "32"},
-        {"surfaceProbes", "1"}, {"traceEvery", "8"},       {"raysBelow", "0.7"},   {"roughness", "0"},       {"denoise", "off"},
-        {"temporal", "on"},     {"normalOffset", "0.001"}, {"seed", "4000000000"}, {"ranked", "2"},          {"opinion", "0.01"},
-        {"maxHandoffs", "0"},   {"startLevel", "6"},       {"coarsestLevel", "2"}, {"tolerance", "0.5"},     {"epsilon", "0.001"},
-        {"farBounds", "1"},
-        {"order", "3"}};
+        {"exposure", "2.5"},    {"glossyRays", "4"},    {"diffuse", "traced"}, {"areaShadows", "field"},
+        {"areaSamples", "32"},  {"surfaceProbes", "1"}, {"traceEvery", "8"},   {"raysBelow", "0.7"},
+        {"roughness", "0"},     {"denoise", "off"},     {"temporal", "on"},    {"normalOffset", "0.001"},
+        {"seed", "4000000000"}, {"ranked", "2"},        {"opinion", "0.01"},   {"maxHandoffs", "0"},
+        {"startLevel", "6"},    {"coarsestLevel", "2"}, {"tolerance", "0.5"},  {"epsilon", "0.001"},
+        {"farBounds", "1"},     {"order", "3"}};
     EXPECT_EQ(std::size(values), liveKnobs().size());
     for (const auto& [name, value] : values)
     {
