@@ -732,7 +732,8 @@ inline constexpr Knob<int> order{
     .most = 3,
     .what = "Which of a leaf's probes a ray asks first. 0: as they are ranked; 1: to or from which it runs most straight; 2: from which it "
             "does; 3: that stands nearest to its line",
-    .buys = "nothing: orders of the papers, to compare with (docs/accuracy.md)"};
+    .buys =
+        "orders of the papers, to compare with: 3 takes up to a fifth fewer hand-offs, 1 and 2 up to twice as many and more wrong rays"};
 
 // ---- the reference
 

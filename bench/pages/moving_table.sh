@@ -20,7 +20,7 @@ run() {
     camera=("--eye=$eye" "--target=$target" --fov 65 --size "$size")
     [[ -f $at.sconce ]] || {
         "$sconce" place "$scene" --count "$count" -o "$at.probes.json" --quiet > /dev/null
-        "$sconce" bake "$scene" --probes "$at.probes.json" --resolution 416 --effects all -o "$at.sconce" --quiet > /dev/null
+        "$sconce" bake "$scene" --probes "$at.probes.json" --resolution 416 --bounces 8 --effects all -o "$at.sconce" --quiet > /dev/null
     }
     [[ -f $at.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --spp "$spp" --bounces 8 --pixel-centre -o "$at.ref.exr" --quiet > /dev/null
     for kind in figure door; do

@@ -23,7 +23,7 @@ for entry in "${list[@]}"; do
     at=$out/$name
     views=() baked=(--bounces 0 --surface-texels 0)
     [[ ${LIGHT:-yes} == no ]] || mapfile -t views < <(views_of "$name")
-    [[ ${LIGHT:-yes} == no ]] || baked=()
+    [[ ${LIGHT:-yes} == no ]] || baked=(--bounces 8)
     read -ra light <<< "$(light_of "$name")"
     "$table" "$scene" "$count" --rows "$steps" --save "$at" > "$at.placed.txt"
     fields=()
