@@ -23,6 +23,7 @@ struct Quality
         .opinion = knobs::opinion.value,     // a hit in a texel larger than this share of the diagonal is asked of a nearer probe; 0: never
         .farBounds = knobs::farBounds.value, // 1: read the far bounds, too, and end early behind them. Fixed in a pass when it is made
         .order = knobs::order.value,         // gpu::kOrder...: whom of a leaf a ray asks first. Fixed in a pass when it is made
+        .unused = 0,
     };
 };
 
