@@ -79,8 +79,8 @@ public:
 
     VkDescriptorSetLayout layout() const;  // for a host's own pipeline layouts, at set SCONCE_FIELD_SET
     VkDescriptorSet descriptorSet() const; // the field's resources
-    /// Values of the first constant ids of a pass that includes shaders/light_field.glsl: `farBounds`, `order`, and whether it holds radiance, are
-    /// fixed in a pass when it is made.
+    /// Values of the first constant ids of a pass that includes shaders/light_field.glsl: `farBounds`, `order`, and whether it holds
+    /// radiance, are fixed in a pass when it is made.
     std::array<uint32_t, 2> constants() const;
     const gpu::LightFieldInfo& info() const;
     uint64_t deviceBytes() const;
