@@ -19,8 +19,8 @@ namespace
 constexpr double kPointsOfVoxel = 8.0; // of a surface that is as large as a voxel's face
 constexpr double kMostPoints = 4e6;    // voxels are larger where there were more
 constexpr uint32_t kPlacesOfKey = 8;   // that are gathered at
-constexpr uint32_t kTriedLog = 5;      // log2 of those that are asked, to find them
-constexpr uint32_t kTriedStep = 13;    // from one to the next: coprime, so that all have their turn, and the first lie far apart
+constexpr uint32_t kTried = 32;        // that are asked, to find them
+constexpr uint32_t kTriedStep = 13;    // from one to the next: coprime to them, so that all have their turn, and the first lie far apart
 constexpr uint32_t kRaysOfPlace = 8;
 constexpr float kLeastOpen = 1e-3f;       // weight of a place
 constexpr float kTight = 0.5f;            // of a voxel: what is no further from what is about it may be sealed up
@@ -209,10 +209,10 @@ std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const ui
 std::vector<Place> chosenOf(std::span<const Place> places, float side, const TriangleGather& triangles, std::span<const uint32_t> sent)
 {
     std::vector<Place> chosen;
-    const size_t tried = std::min<size_t>(places.size(), size_t(1) << kTriedLog);
-    for (uint32_t turn = 0; turn < 1u << kTriedLog && chosen.size() < kPlacesOfKey; ++turn)
+    const size_t tried = std::min<size_t>(places.size(), kTried);
+    for (uint32_t turn = 0; turn < kTried && chosen.size() < kPlacesOfKey; ++turn)
     {
-        const uint32_t i = (turn * kTriedStep) % (1u << kTriedLog); // far from those before it
+        const uint32_t i = (turn * kTriedStep) % kTried; // far from those before it
         if (i >= tried) continue;
         const Place& place = places[i * places.size() / tried];
         const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);

@@ -26,8 +26,9 @@ struct HiddenPlaces
 /// Gathers light, by exact rays, at surfaces that no texel of a field's surface light shows: undersides, gaps, what stands behind things; a
 /// mean for each voxel and facing (shaders/shared/hidden_light.h). Points are drawn evenly over the scene's surface, on each side that can
 /// be seen from outside; where nothing arrives, that is kept only where a look-up would find light without, as in a dark room beside a lit
-/// one. Afterwards the field's info.hidden and surfaceLight hold them. Cost: a look-up for each of up to some millions of points, and 64
-/// rays for each voxel and facing.
+/// one; of a voxel's those count that are open, or from which what a probe sees is met, not what is sealed up behind them. Afterwards the
+/// field's info.hidden and surfaceLight hold them. Cost: a look-up for each of up to some millions of points, and for each voxel and
+/// facing 64 rays for the light, and 64 to 256 for where to gather it.
 /// @param lit   with surface light, without refined texels
 /// @param sent  radiance that each texel sends, RGB9E5
 /// @param places  where light was gathered before, of the same surfaces in other light, which then is where it is; null, or empty: found,
