@@ -314,6 +314,13 @@ inline constexpr Knob<uint32_t> liveLinks{
     .buys = "lights that move (LiveLight, relight --sun, render --sun-path); a bake more, and about 75 KiB a probe and link",
     .readme = true};
 inline constexpr uint32_t kCapturedLinks = 16; // liveLinks of `sconce capture`, where none are asked for
+inline constexpr Knob<bool> compact{.name = "compact",
+                                    .option = "bake --compact",
+                                    .member = "BakeSettings::compact",
+                                    .value = false,
+                                    .what = "Keeps the probes' maps in blocks of 4x4 texels: of cube faces whose light doesn't change",
+                                    .buys = "a third of their memory; rays that unpack them",
+                                    .readme = true};
 inline constexpr uint32_t kLampTexels[] = {0, 512, 1024, 2048, 4096, 8192};
 inline constexpr Knob<uint32_t> lampTexels{
     .name = "lampTexels",

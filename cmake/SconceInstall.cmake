@@ -15,8 +15,8 @@ install(EXPORT sconce NAMESPACE sconce:: FILE sconce-targets.cmake DESTINATION $
 
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DIN=runtime/sconce.h
     -DOUT=\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${headers}/sconce.h -P ${PROJECT_SOURCE_DIR}/cmake/SconceFlatten.cmake COMMAND_ERROR_IS_FATAL ANY)" COMPONENT library)
-set(shared_headers brdf brdf_text chart color face_chain face_march field_passes frame gpu_types hidden_light lamps light_cells light_field light_lookup live_text octree_descent prefiltered
-    probe_trace pure_text ray_query ray_state refined sample_pair surface_light texel)
+set(shared_headers brdf brdf_text chart color distance_block face_chain face_march field_passes frame gpu_types hidden_light lamps light_cells light_field light_lookup live_text octree_descent prefiltered
+    probe_trace pure_text radiance_block ray_query ray_state refined sample_pair surface_light texel)
 list(TRANSFORM shared_headers REPLACE "(.+)" "shaders/shared/\\1.h")
 install(FILES ${shared_headers} DESTINATION ${headers}/shaders/shared COMPONENT library)
 install(FILES shaders/light_field.glsl DESTINATION ${headers}/shaders COMPONENT library)

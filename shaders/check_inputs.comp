@@ -101,7 +101,7 @@ float albedoSeen(Known known, vec3 normal)
     seen.face = dominantFace(known.from);
     vec3 uvw = faceCoordinates(seen.face, known.from);
     seen.pixel = clamp((uvw.xy / uvw.z + 1.0) * (0.5 * float(field.faceSize)), vec2(0.0), vec2(float(field.faceSize) - 0.5));
-    seen.word = distanceWord(mapWords(seen.probe, seen.face) + uint(seen.pixel.y) * field.faceSize + uint(seen.pixel.x));
+    seen.word = texelWord(mapWords(seen.probe, seen.face), uint(seen.pixel.x), uint(seen.pixel.y));
     float light = luminance(taps.light) / taps.weight;
     return light > 1e-4 ? luminance(surfelRadiance(seen)) / light : -1.0;
 }

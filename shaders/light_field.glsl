@@ -37,6 +37,7 @@ bool holdsPrefiltered() { return (kFieldFlags & kHoldsPrefiltered) != 0u; }
 bool holdsLive() { return (kFieldFlags & kHoldsLive) != 0u; }
 bool streams() { return (kFieldFlags & kStreams) != 0u; }
 int probeOrder() { return int((kFieldFlags >> kOrderShift) & 3u); }
+bool mapsInBlocks() { return (kFieldFlags & kMapsInBlocks) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form, or none.
 layout(constant_id = kHoldsRadianceId) const bool kHoldsRadiance = true;
@@ -81,6 +82,12 @@ uint radianceWord(uint index)
     if (byTexels()) return texelFetch(sconceRadiance, int(index)).x;
     return SconceWords(radianceAddress).word[index];
 }
+uvec4 radianceBlock(uint index)
+{
+    if (byTexels()) return texelFetch(sconceRadiance, int(index));
+    SconceWords words = SconceWords(radianceAddress);
+    return uvec4(words.word[4u * index], words.word[4u * index + 1u], words.word[4u * index + 2u], words.word[4u * index + 3u]);
+}
 uint irradianceWord(uint index)
 {
     if (byTexels()) return texelFetch(sconceIrradiance, int(index)).x;
@@ -103,6 +110,8 @@ vec3 fixedWeight() { return radianceWeight; }
 uvec4 octreeTexel(ivec3 p) { return texelFetch(sconceOctree, p, 0); }
 
 #include "shared/pure_text.h"
+#include "shared/distance_block.h"
+#include "shared/radiance_block.h"
 #include "shared/octree_descent.h"
 #include "shared/ray_state.h"
 #include "shared/face_march.h"

@@ -35,7 +35,7 @@ bool meetsNearby(uint probe, vec3 from, vec3 direction, inout TraceResult hit)
         hit.probe = probe;
         hit.face = face;
         hit.pixel = clamp(half_ * (uvw.xy / uvw.z + 1.0), vec2(0.0), vec2(2.0 * half_ - 0.001));
-        hit.word = distanceWord(mapWords(probe, face) + uint(hit.pixel.y) * field.faceSize + uint(hit.pixel.x));
+        hit.word = texelWord(mapWords(probe, face), uint(hit.pixel.x), uint(hit.pixel.y));
         hit.t = float(i) * width;
         hit.status = kHit;
         return true;

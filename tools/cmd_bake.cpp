@@ -286,6 +286,7 @@ BakeCommands addBakeCommands(CLI::App& app, Context& context)
     BakeCommands commands{std::make_shared<BakeOptions>(), std::make_shared<BakeOptions>()};
     addOptions(bake, *commands.bake);
     addKnob(bake, "--live-links", commands.bake->settings.liveLinks, knobs::liveLinks);
+    addSwitch(bake, "--compact", commands.bake->settings.compact, knobs::compact);
     addDims(bake, commands.bake->dims, "; the scene is baked in that light, without groups");
     onChosen(bake, context, commands.bake, runAlone);
     CLI::App* capture = addCommand(app, context, "capture",

@@ -33,6 +33,8 @@ namespace
 constexpr float kRight = 0.05f;      // of a term: what counts as right, or thrice the reference's own error where that is more
 constexpr float kSeenAtAll = 0.002f; // of the pixel's whole light: terms that are off by less are not worth a word
 constexpr float kHitRight = 0.01f;   // of the diagonal, as the bench judges rays
+constexpr float kWayRight = 0.05f;   // of the ray's own way: a room on a plain has a diagonal that says nothing of it
+constexpr float kTexelsRight = 2.0f; // of the probe that answered, where that is more
 constexpr float kLight = 0.05f;      // of the radiance along a ray
 constexpr uint32_t kAround = 64;     // rays by which a place's surroundings are measured
 constexpr float kCoarse = 0.25f;     // texels wider than this share of the distance to the surroundings lose their shadows
@@ -123,6 +125,14 @@ float surroundings(const RayScene& rays, const ShadingPoint& point)
     return sum > 0.0f ? float(kAround) / sum : std::numeric_limits<float>::infinity();
 }
 
+/// Width of a texel of the probe that answered, at what it answered, metres; 0: none did.
+float texelAtEnd(const FieldData& data, const gpu::RayHit& hit)
+{
+    if (hit.probe >= data.probes.size()) return 0.0f;
+    const vec3 centre = vec3(data.info.origin) + data.info.scale * vec3(data.probes[hit.probe].centre);
+    return 2.0f * glm::distance(centre, vec3(hit.position)) / float(data.info.faceSize);
+}
+
 void explainReflection(const RayScene& rays, const PathTracer& paths, const FieldData& data, uint32_t count, Explained& e)
 {
     const float roughness = e.point.surface.roughness;
@@ -136,6 +146,7 @@ void explainReflection(const RayScene& rays, const PathTracer& paths, const Fiel
     if (const auto met = rays.closest(e.ray.origin, direction))
     {
         e.truthT = std::max(met->t, 0.0f);
+        e.metresRight = std::min(e.metresRight, std::max(kWayRight * e.truthT, kTexelsRight * texelAtEnd(data, e.way.hit)));
         const ShadingPoint surface = paths.shade(*met, -direction);
         e.truthNormal = surface.geometricNormal;
         e.met = fmt::format("material '{}', metallic {:.2f}, roughness {:.2f}", rays.scene().materials[met->material].name,

@@ -80,6 +80,7 @@ Json fieldJson(const FieldData& field)
     json["face_size"] = info.faceSize;
     json["surface_size"] = info.surfaceSize;
     if (info.surfaceSize > 0) json["surface_texels_per_metre"] = texelsPerMetre(field);
+    json["compact"] = inBlocks(field.info);
     json["surface_directions"] = info.surfaceDirections != 0;
     json["lamps"] = field.lamps.size();
     json["bounces"] = field.bounces;
@@ -114,8 +115,9 @@ void printField(const FieldData& field, const std::string& file)
               << fmt::format("bytes: {} = distance {} + normals {} + radiance {} + prefiltered {} + irradiance {} + index {}\n",
                              megabytes(bytes.total()), megabytes(bytes.distance), megabytes(bytes.normals), megabytes(bytes.radiance),
                              megabytes(bytes.prefiltered), megabytes(bytes.irradiance), megabytes(bytes.index))
-              << "octree: " << field.octree.leaves << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift
-              << ", voxels of " << field.octree.voxel * info.scale << " m\n";
+              << (inBlocks(field.info) ? "maps in blocks of 4x4 texels (--compact)\n" : "") << "octree: " << field.octree.leaves
+              << " leaves, " << field.octree.nodes << " nodes, depth " << field.octree.topShift << ", voxels of "
+              << field.octree.voxel * info.scale << " m\n";
     const double density = info.surfaceSize > 0 ? texelsPerMetre(field) : 0.0;
     if (info.surfaceSize > 0)
         std::cout << fmt::format(

@@ -72,6 +72,9 @@ Result<FieldData> octahedralField(const FieldData& faces, uint32_t size)
     if (faces.info.chart != gpu::kChartCube)
         return Error{ErrorCode::badInput,
                      "Our tracer's octahedral maps are made from cube faces, these are octahedral. Bake with --chart cube."};
+    if (inBlocks(faces.info))
+        return Error{ErrorCode::badInput, "Our tracer's octahedral maps are made from texels, and this field's are in blocks. Bake "
+                                          "without --compact."};
     if (size == 0 || size % 64 != 0)
         return Error{ErrorCode::badArgument,
                      fmt::format("Our tracer's octahedral maps need a multiple of 64 texels a side, not {}.", size)};

@@ -132,6 +132,9 @@ void resampleSurface(Text& text, const FieldData& faces, size_t probe, uint32_t*
 
 Result<FieldData> wangField(const FieldData& faces)
 {
+    if (inBlocks(faces.info))
+        return Error{ErrorCode::badInput,
+                     "Tracer wang makes its maps from texels, and this field's are in blocks. Bake without --compact."};
     const uint32_t size = faces.info.faceSize;
     if (!std::has_single_bit(size) || size < 2 * kFewestCells)
         return Error{ErrorCode::badInput, fmt::format("Tracer wang needs cube faces whose size is a power of two from 16; these have {} "

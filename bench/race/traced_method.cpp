@@ -178,7 +178,8 @@ double TracedMethod::traceMebibytes() const
 {
     uint32_t words = field.info.wordsPerProbe;
     if (!how.opponent && how.quality.trace.farBounds == 0) // they are there, and not read
-        words = (how.octahedral != 0 ? 1 : 6) * Pure<float>::chainNearWords(field.info.faceSize, int(field.info.topLevel));
+        words = (how.octahedral != 0 ? 1 : 6) * Pure<float>::chainNearWords(field.info.faceSize, int(field.info.topLevel)) -
+                (inBlocks(field.info) ? 6 * Pure<float>::wordsOfBlocksSaved(field.info.faceSize) : 0);
     const double saved = how.opponent ? 0.0 : double(bytesSaved(field, how.distanceBits)) / double(field.info.probeCount);
     return (double(words) * sizeof(uint32_t) - saved) / kMebibyte;
 }

@@ -8,6 +8,7 @@
 #include "base/safe_file.h"
 #include "bench/sweep/keys.h"
 #include "runtime/field/light_field_file.h"
+#include "runtime/field/map_blocks.h"
 #include "scene/scene_check.h"
 #include "scene/triangle_rays.h"
 
@@ -97,6 +98,8 @@ Result<FieldData> KeptFields::fieldFor(const PointSettings& settings, Json& cost
     }
     else
         field = baked(*probes, bake, settings.fieldGather, "", cost, progress);
+    if (field && settings.compact) // of the same bake
+        if (auto status = putInBlocks(*field); !status) return status.error();
     cost["probe_set"] = probes->name;
     cost["place_s"] = probes->report["seconds"];
     cost["coverage"] = probes->report["coverage"]["rays"];

@@ -92,6 +92,7 @@ std::vector<SweptKnob> makeKnobs()
         knob("surface rays", bake, fields, {"16", "64", "256"}, knobs::surfaceRays, SCONCE_FIELD(surfaceRays)),
         knob("surface refined", bake, fields, {"0", "0.02", "0.1"}, knobs::surfaceRefined, SCONCE_FIELD(surfaceRefined)),
         knob("field gather", bake, fields, {"off", "on"}, knobs::gather, SCONCE_FIELD(fieldGather)),
+        knob("compact", bake, fields, {"off", "on"}, knobs::compact, SCONCE_FIELD(compact)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),
         knob("low factor", trace, opponents, {}, knobs::lowFactor, SCONCE_FIELD(lowFactor)),
         knob("look-up bias", trace, volumes, {"0", "0.05", "0.1", "0.2", "0.4"}, knobs::lookUpBias, SCONCE_FIELD(lookUpBias)),

@@ -40,6 +40,7 @@ struct PointSettings
     uint32_t lowFactor = knobs::lowFactor.value;        // of an opponent; 0: bestLowFactor
     float lookUpBias = knobs::lookUpBias.value;         // of a volume of irradiance, metres
     int distanceBits = knobs::distanceBits.value;       // of a texel of ours (bench/race/distance_format.h)
+    bool compact = knobs::compact.value;                // of ours
     Quality quality;                                    // of our tracer
     RenderSettings frame;
     uint32_t paths = knobs::tracedPaths.value; // a pixel, of the path tracer

@@ -22,6 +22,7 @@
 #include "runtime/bake/probe_clearance.h"
 #include "runtime/bake/surface_baker.h"
 #include "runtime/field/field_space.h"
+#include "runtime/field/map_blocks.h"
 #include "runtime/field/octree_builder.h"
 #include "runtime/field/tracer_cpu.h"
 #include "shaders/shared/pure.h"
@@ -64,6 +65,8 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
                     faultOf(knobs::surfaceRefined, settings.surfaceRefined), faultOf(knobs::lampTexels, settings.lampTexels),
                     faultOf(knobs::liveLinks, settings.liveLinks)});
     if (!fault.empty()) return fault;
+    if (settings.compact && settings.chart != gpu::kChartCube)
+        return "compact maps are of cube faces, and these are octahedral; leave compact false";
     if (probes.empty() || probes.size() > kMostProbes)
         return fmt::format("there are {} probes; give between 1 and {}", probes.size(), kMostProbes);
     for (size_t i = 0; i < probes.size(); ++i)
@@ -615,6 +618,8 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         if (info.surfaceSize == 0) makePatches(bake.field, bake.surfaces, bake.emitted);
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};
+        if (settings.compact)
+            if (auto status = putInBlocks(bake.field); !status) return status.error();
         // Where no frame reads it, it was made for what surfaces send to mirrors alone.
         if (!settings.readsSurfaces && !settings.layout && bake.field.lamps.empty()) dropSurfaceLight(bake.field);
         spent.prefilterSeconds = watch.lap();

@@ -33,12 +33,13 @@ struct BakeSettings
     uint32_t surfaceRays = knobs::surfaceRays.value;     // that gather light for each of them
     uint32_t liveLinks = knobs::liveLinks.value;         // of each texel, so that lights may move; bakeLightGroups() makes them; 0: none
     bool lit = true;                                     // false: geometry and material alone, with live links; relightField() lights it
-    const ExactRays* rays = nullptr;  // to the triangles of the scene that is baked, that gather it; null: through the field
-    DeviceSceneDesc scene;            // textures and lights
-    std::vector<std::string> effects; // names of the plan's effects, kept in the file for reports
-    bool radiance = true;             // keep the maps' radiance, which traced rays need: half of the field
-    bool readsSurfaces = true;        // keep surface light, which diffuse light and rough reflections are read from
-    bool prefiltered = true;          // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
+    const ExactRays* rays = nullptr;     // to the triangles of the scene that is baked, that gather it; null: through the field
+    DeviceSceneDesc scene;               // textures and lights
+    std::vector<std::string> effects;    // names of the plan's effects, kept in the file for reports
+    bool radiance = true;                // keep the maps' radiance, which traced rays need: half of the field
+    bool compact = knobs::compact.value; // maps in blocks of 4 x 4 texels (runtime/field/map_blocks.h)
+    bool readsSurfaces = true;           // keep surface light, which diffuse light and rough reflections are read from
+    bool prefiltered = true;             // make the prefiltered radiance, which rough reflections need: 21 KiB a probe
     OctreeSettings octree;
     std::optional<ProbeGrid> grid; // set when the probes are a uniform one
     /// Baked before, of the same scene and probes, with cube faces, surface light and no lamps: its light is what the probes' surfaces

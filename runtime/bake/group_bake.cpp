@@ -82,6 +82,8 @@ std::string groupFault(const BakeSettings& settings)
 {
     if (settings.chart != gpu::kChartCube || settings.surfaceTexels == 0 || settings.light)
         return "light groups are kept of surface light on cube faces; give surface texels, and the chart cube";
+    if (settings.compact)
+        return "light that may change can't be in blocks; leave compact false, or bake without light groups and live links";
     if (settings.liveLinks == 0)
         return settings.lit ? "" : "geometry and material alone are light's links; give live links, or let the field be lit";
     if (!settings.rays) return "live links are found by rays to triangles; give rays, or gather by triangles";

@@ -57,6 +57,22 @@ uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size)
     return (chart == gpu::kChartOctahedral ? 1u : 6u) * size * size;
 }
 
+uint32_t blockedDistanceWords(uint32_t faceSize)
+{
+    return distanceWordsPerProbe(gpu::kChartCube, faceSize) - 6 * Pure<float>::wordsOfBlocksSaved(faceSize);
+}
+
+bool inBlocks(const gpu::LightFieldInfo& info)
+{
+    return info.chart == gpu::kChartCube && info.faceSize >= Pure<float>::kBlockSide &&
+           info.wordsPerProbe == blockedDistanceWords(info.faceSize);
+}
+
+size_t radianceWordsOf(const gpu::LightFieldInfo& info)
+{
+    return radianceWordsPerProbe(info.chart, info.faceSize) / (inBlocks(info) ? 4 : 1);
+}
+
 uint32_t chartSize(uint32_t chart, uint32_t resolution)
 {
     return chart == gpu::kChartCube ? resolution / 2 : resolution;

@@ -104,6 +104,12 @@ size_t bytesOf(const LiveTransport& live);
 uint32_t coarsestLevel(uint32_t faceSize);
 uint32_t distanceWordsPerProbe(uint32_t chart, uint32_t size);
 uint32_t radianceWordsPerProbe(uint32_t chart, uint32_t size);
+/// Whether maps are in blocks of 4 x 4 texels: distances as of shaders/shared/distance_block.h, [probe][face]: [y / 4][x / 4][8], the
+/// chain's other levels and far bounds; radiance as of radiance_block.h, [probe][face][y / 4][x / 4][4]. Only of cube faces, and of light
+/// that doesn't change.
+bool inBlocks(const gpu::LightFieldInfo& info);
+uint32_t blockedDistanceWords(uint32_t faceSize);        // of a probe in blocks
+size_t radianceWordsOf(const gpu::LightFieldInfo& info); // of a probe, in blocks or not
 inline constexpr uint32_t kIrradianceWordsPerProbe = 2 * gpu::kIrradianceSize * gpu::kIrradianceSize;
 
 /// Texels a side of a chart's map where an octahedral one has `resolution`: cube faces have half of it.

@@ -105,12 +105,14 @@ Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& qu
         const char* what;
         uint32_t binding;
         size_t room = 0; // words that come later
+        VkFormat texel = VK_FORMAT_R32_UINT;
         size_t size() const { return std::max(words.size(), room); }
     };
     const size_t distances = pool ? pool->slots * pool->file.distanceWords() : 0,
                  radiances = pool ? pool->slots * pool->file.radianceWords() : 0;
     const Part parts[] = {{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding, distances},
-                          {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding, radiances},
+                          {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding, radiances,
+                           inBlocks(field.info) ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT},
                           {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
                           {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding},
                           {made.surface, field.surfaceLight, "surface light", gpu::kFieldSurfaceBinding}};
@@ -121,9 +123,9 @@ Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& qu
     for (const Part& part : parts)
     {
         if (part.size() == 0) continue;
-        auto buffer = part.words.empty() ? (made.byTexels ? gpu.makeTexelBuffer(part.room * 4, VK_FORMAT_R32_UINT, part.what)
+        auto buffer = part.words.empty() ? (made.byTexels ? gpu.makeTexelBuffer(part.room * 4, part.texel, part.what)
                                                           : gpu.makeBuffer(part.room * 4, 0, MemoryUse::device, part.what))
-                      : made.byTexels    ? gpu.makeTexelBuffer<uint32_t>(part.words, VK_FORMAT_R32_UINT, part.what)
+                      : made.byTexels    ? gpu.makeTexelBuffer<uint32_t>(part.words, part.texel, part.what)
                                          : gpu.makeBufferWith<uint32_t>(part.words, 0, part.what);
         if (!buffer) return buffer.error();
         part.buffer = std::move(*buffer);
@@ -247,7 +249,8 @@ std::array<uint32_t, 2> LightField::constants() const
                                  (shared->info.chart == gpu::kChartOctahedral ? gpu::kOnOctahedron : 0u) |
                                  (shared->byTexels ? gpu::kByTexels : 0u) | (shared->info.refinedTexels > 0 ? gpu::kHoldsRefined : 0u) |
                                  (shared->maps ? gpu::kStreams : 0u) | (shared->liveIncident.address() != 0 ? gpu::kHoldsLive : 0u) |
-                                 (shared->prefiltered.size() > 0 ? gpu::kHoldsPrefiltered : 0u);
+                                 (shared->prefiltered.size() > 0 ? gpu::kHoldsPrefiltered : 0u) |
+                                 (inBlocks(shared->info) ? gpu::kMapsInBlocks : 0u);
     values[gpu::kHoldsRadianceId] = shared->radianceHeld ? 1u : 0u;
     return values;
 }

@@ -169,7 +169,8 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
     if (i.hidden != 0 && i.hidden >> gpu::kHiddenShiftBits == 0) return "its light of hidden surfaces has no slots";
     if (i.surfaceDirections > 1) return fmt::format("its surface light's directions are {}, not 0 or 1", i.surfaceDirections);
     if (i.probeCount > kMostProbes) return fmt::format("its probe count {} is above {}", i.probeCount, kMostProbes);
-    if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize)) return "its words per probe disagree with its map size";
+    if (i.wordsPerProbe != distanceWordsPerProbe(i.chart, i.faceSize) && !inBlocks(i))
+        return "its words per probe disagree with its map size";
     if (i.chart == gpu::kChartCube && i.topLevel != coarsestLevel(i.faceSize)) return "its coarsest level disagrees with its map size";
     if (tree.marker != kMostProbesOf8Bits && tree.marker != kMostProbes)
         return fmt::format("its octree's marker {} is neither 255 nor 65535", tree.marker);
@@ -182,7 +183,7 @@ std::string sizeProblem(const gpu::LightFieldInfo& i, const OctreeHeader& tree, 
         sizeof(gpu::LightFieldInfo),
         n * sizeof(gpu::ProbeHeader),
         product({n, i.wordsPerProbe, 4}),
-        product({n, radianceWordsPerProbe(i.chart, i.faceSize), 4}),
+        product({n, radianceWordsOf(i), 4}),
         n * kIrradianceWordsPerProbe * sizeof(uint32_t),
         sizeof(OctreeHeader),
         product({tree.bricks[0], tree.bricks[1], tree.bricks[2], 8 * 4 * sizeof(uint16_t)}),
@@ -685,11 +686,9 @@ Status readBlock(Reader& reader, const Block& block, Bytes& stored, std::span<st
 
 /// Bytes of a section's blocks but the last: of the maps as many probes as come to kMapBytes, at least one, so that they can be read one by
 /// one.
-uint64_t blockBytes(Section section, const gpu::LightFieldInfo& info)
+uint64_t blockBytes(Section section, uint64_t bytes, const gpu::LightFieldInfo& info)
 {
-    const uint64_t probe = section == distance   ? uint64_t(info.wordsPerProbe) * 4
-                           : section == radiance ? uint64_t(radianceWordsPerProbe(info.chart, info.faceSize)) * 4
-                                                 : 0;
+    const uint64_t probe = section == distance || section == radiance ? bytes / std::max(info.probeCount, 1u) : 0;
     return probe == 0 || probe > kChunkBytes ? kChunkBytes : probe * std::max<uint64_t>(1, kMapBytes / probe);
 }
 
@@ -754,7 +753,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     for (uint32_t section = 0; section < sectionsHere; ++section)
     {
         rawBytes[section] = sections[section].size();
-        blockCount += blocksOf(rawBytes[section], blockBytes(Section(section), field.info));
+        blockCount += blocksOf(rawBytes[section], blockBytes(Section(section), sections[section].size(), field.info));
     }
     std::string problem = sizeProblem(field.info, treeHeader, rawBytes);
     if (problem.empty()) problem = contentProblem(field);
@@ -767,8 +766,8 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     if (Status status = file->append(Bytes(offset)); !status) return status;
     std::vector<Block> blocks;
     for (uint32_t section = 0; section < sectionsHere; ++section)
-        if (Status status =
-                appendSection(*file, Section(section), sections[section], blockBytes(Section(section), field.info), offset, blocks);
+        if (Status status = appendSection(*file, Section(section), sections[section],
+                                          blockBytes(Section(section), sections[section].size(), field.info), offset, blocks);
             !status)
             return status;
 
@@ -1025,7 +1024,8 @@ Result<FieldAndMaps> openField(const std::filesystem::path& file)
                 if (block.section == radiance && block.rawBytes > 0) made->radianceBlocks.push_back(block);
             }
             made->distanceWords = field->info.wordsPerProbe;
-            if (!made->radianceBlocks.empty()) made->radianceWords = radianceWordsPerProbe(field->info.chart, field->info.faceSize);
+            for (const Block& block : made->radianceBlocks) made->radianceWords += block.rawBytes / sizeof(uint32_t);
+            made->radianceWords /= std::max(field->info.probeCount, 1u);
             made->reader = std::move(*reader);
             return FieldAndMaps{std::move(*field), MapFile(std::move(made))};
         });

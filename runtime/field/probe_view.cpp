@@ -39,7 +39,7 @@ vec3 radianceSeen(Twin& text, uint32_t probe, vec3 direction)
     met.pixel = {middle * (uvw.x / uvw.z + 1.0f), middle * (uvw.y / uvw.z + 1.0f)};
     const int last = int(text.field.faceSize) - 1;
     const uint32_t row = uint32_t(std::clamp(int(met.pixel.y), 0, last)), column = uint32_t(std::clamp(int(met.pixel.x), 0, last));
-    met.word = text.distanceWord(text.mapWords(probe, met.face) + row * text.field.faceSize + column);
+    met.word = text.texelWord(text.mapWords(probe, met.face), column, row);
     return text.answerOf(vec3(0.0f), direction, met).radiance;
 }
 

@@ -49,11 +49,16 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     static constexpr uint kPrefilteredWords = gpu::kPrefilteredWords;
     static constexpr int kPrefilteredLevels = gpu::kPrefilteredLevels;
 
-    explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality) : field(data.info), quality(traceQuality), source(data)
+    explicit LightFieldTwin(const FieldData& data, const TraceQuality& traceQuality)
+        : field(data.info), quality(traceQuality), source(data), blocks(inBlocks(data.info))
     {
     }
 
 #include "shaders/shared/pure_text.h"
+
+#include "shaders/shared/distance_block.h"
+
+#include "shaders/shared/radiance_block.h"
 
     /// Of 4 bytes, but for an octree's texel of 8 and a header of 16.
     struct Reads
@@ -64,6 +69,7 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     const gpu::LightFieldInfo& field;
     TraceQuality quality;
     const FieldData& source;
+    const bool blocks;
     mutable Reads read;
 
     bool readsFarBounds() const
@@ -112,6 +118,15 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     uint radianceWord(uint index) const
     {
         return source.radiance[index];
+    }
+    bool mapsInBlocks() const
+    {
+        return blocks;
+    }
+    uvec4 radianceBlock(uint index) const
+    {
+        const uint* words = source.radiance.data() + 4 * size_t(index);
+        return uvec4(words[0], words[1], words[2], words[3]);
     }
     uint irradianceWord(uint index) const
     {

@@ -36,6 +36,21 @@ SCONCE_FN uint mapWords(uint probe, int face)
     return mapSlot(probe) * field.wordsPerProbe + (onOctahedron() ? 0u : uint(face) * (field.wordsPerProbe / 6u));
 }
 
+/// First word of the block that a texel of a face is in, whose words begin there.
+SCONCE_FN uint blockWords(uint faceWords, uint x, uint y) { return faceWords + kDistanceBlockWords * ((y / 4u) * (field.faceSize / 4u) + x / 4u); }
+
+/// A texel of a face whose words begin there, as a word of level 0 (texel.h).
+SCONCE_FN uint texelWord(uint faceWords, uint x, uint y)
+{
+    if (!mapsInBlocks()) return distanceWord(faceWords + y * field.faceSize + x);
+    uint block = blockWords(faceWords, x, y);
+    uint row = distanceWord(block + 4u + (y & 3u));
+    return blockTexel(distanceWord(block + blockPlane(row, x & 3u)), row, x & 3u, y & 3u);
+}
+
+/// Where the words of a face's coarser levels and far bounds lie, from where they would without blocks.
+SCONCE_FN uint behindTexels(uint offset) { return mapsInBlocks() ? offset - wordsOfBlocksSaved(field.faceSize) : offset; }
+
 /// Inside the ball about the centre nothing can be met: a segment that starts there starts where the ray leaves it (this also removes the
 /// singularity at W = 0).
 /// @return  where the ray comes into the ball, if that lies ahead, else kNever
@@ -188,15 +203,32 @@ SCONCE_FN vec2 planeLine(SCONCE_IN(Segment) g, uint word, real cx, real cy)
     return vec2(g.q0 - (qc + gx * (g.P.x - cx) + gy * (g.P.y - cy)), g.dq - (gx * g.dP.x + gy * g.dP.y));
 }
 
+/// A row or column of a level's cells, of a texel's that may be mirrored.
+SCONCE_FN uint cellOf(int texel, bool mirrored, int level)
+{
+    int last = (mirrorSize() >> level) - 1;
+    int cell = texel >> level;
+    return uint(mirrored ? last - cell : cell);
+}
+
 /// Cell of a level, row-major, of (mirrored) texel x, y.
 SCONCE_FN uint cellIndex(SCONCE_IN(Segment) g, int x, int y, int level)
 {
-    int last = (mirrorSize() >> level) - 1;
-    int cx = x >> level;
-    int cy = y >> level;
-    cx = g.mirrorX ? last - cx : cx;
-    cy = g.mirrorY ? last - cy : cy;
-    return uint(cy) * chainWidth(field.faceSize, level) + uint(cx);
+    return cellOf(y, g.mirrorY, level) * chainWidth(field.faceSize, level) + cellOf(x, g.mirrorX, level);
+}
+
+/// Word of a texel, or of a level's cell. Lanes that march beside each other read on different levels: of a block's words the first is read with the
+/// others' cells.
+SCONCE_FN uint cellWord(SCONCE_IN(Segment) g, int x, int y, int level)
+{
+    uint at = g.faceWords + behindTexels(chainOffset(field.faceSize, level)) + cellIndex(g, x, y, level);
+    if (!mapsInBlocks()) return distanceWord(at);
+    uint cx = cellOf(x, g.mirrorX, 0);
+    uint cy = cellOf(y, g.mirrorY, 0);
+    uint block = blockWords(g.faceWords, cx, cy);
+    uint word = distanceWord(level == 0 ? block + 4u + (cy & 3u) : at);
+    if (level != 0) return word;
+    return blockTexel(distanceWord(block + blockPlane(word, cx & 3u)), word, cx & 3u, cy & 3u);
 }
 
 /// Slack of the hit rule at q, relative to the distance: no more than a texel is wide, so that a room in a landscape keeps its own measure.
@@ -207,7 +239,7 @@ SCONCE_FN real slack(real q) { return min(quality.epsilon * real(field.diagonal)
 SCONCE_FN bool behindCell(SCONCE_INOUT(RayState) r, uint index, real qs, real qe)
 {
     uint cell = chainOffset(field.faceSize, r.segment.level) - field.faceSize * field.faceSize + index;
-    uint word = distanceWord(r.segment.faceWords + chainNearWords(field.faceSize, int(field.topLevel)) + cell / 2u);
+    uint word = distanceWord(r.segment.faceWords + behindTexels(chainNearWords(field.faceSize, int(field.topLevel))) + cell / 2u);
     ++r.cost.distanceReads;
     real thickest = quality.tolerance * footprint() * kThickest + slack(max(qs, qe));
     return max(qs, qe) * (real(1.0) + thickest) < farBoundIn(word, cell);
@@ -343,7 +375,7 @@ SCONCE_FN void march(SCONCE_INOUT(RayState) r)
         int bx = x + (1 << r.segment.level);
         int by = y + (1 << r.segment.level);
         uint index = cellIndex(r.segment, x, y, r.segment.level);
-        uint word = distanceWord(r.segment.faceWords + chainOffset(field.faceSize, r.segment.level) + index);
+        uint word = cellWord(r.segment, x, y, r.segment.level);
         ++r.cost.distanceReads;
         real sx = sAtBorder(bx, r.segment.P.x, r.segment.iP.x);
         real sy = sAtBorder(by, r.segment.P.y, r.segment.iP.y);
@@ -398,7 +430,7 @@ SCONCE_FN bool continuesPrevious(SCONCE_INOUT(RayState) r, int axis, real tolera
     int px = axis == 1 ? r.segment.ix - 1 : r.segment.ix;
     int py = axis == 2 ? r.segment.iy - 1 : r.segment.iy;
     if (axis == 0 || px < 0 || py < 0) return false;
-    uint before = distanceWord(r.segment.faceWords + cellIndex(r.segment, px, py, 0));
+    uint before = cellWord(r.segment, px, py, 0);
     ++r.cost.distanceReads;
     if ((before & 0xffffu) == 0u) return false;
     real qb = halfToReal(before);

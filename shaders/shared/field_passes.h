@@ -24,6 +24,7 @@ const uint kHoldsPrefiltered = 32u; // there is prefiltered radiance
 const uint kHoldsLive = 16u; // rays find live light (live_light.h), besides the radiance that is baked
 const uint kStreams = 64u; // the maps of some probes are not on the device (FieldStream)
 const uint kOrderShift = 7u; // of the two bits that hold TraceQuality::order
+const uint kMapsInBlocks = 512u; // distances and radiance are in blocks of 4 x 4 texels (distance_block.h, radiance_block.h)
 const uint kByTexels = 4u; // words are texels of buffers; else they are read by address
 
 // The uniform block: members, for the shared texts name them plainly. Addresses are of the words of FieldData.

@@ -1,10 +1,19 @@
 // What light the probe maps hold: radiance at a traced hit and prefiltered irradiance at a point. Shared text, see probe_trace.h; needs
-// radianceWord(uint), irradianceWord(uint), patchWords(uint), holdsRadiance() and holdsPrefiltered() besides.
+// radianceWord(uint), radianceBlock(uint), irradianceWord(uint), patchWords(uint), holdsRadiance() and holdsPrefiltered() besides.
 
 SCONCE_FN uint radianceIndex(uint probe, int face, int x, int y)
 {
     uint map = onOctahedron() ? mapSlot(probe) : mapSlot(probe) * 6u + uint(face);
     return (map * field.faceSize + uint(y)) * field.faceSize + uint(x);
+}
+
+/// Of a texel of a probe's map, W/(m^2 sr).
+SCONCE_FN vec3 mapRadiance(uint probe, int face, int x, int y)
+{
+    if (!mapsInBlocks()) return unpackRadiance(radianceWord(radianceIndex(probe, face, x, y)));
+    uint side = field.faceSize / kBlockSide;
+    uint block = ((mapSlot(probe) * 6u + uint(face)) * side + uint(y) / kBlockSide) * side + uint(x) / kBlockSide;
+    return blockRadiance(radianceBlock(block), (uint(y) % kBlockSide) * kBlockSide + uint(x) % kBlockSide);
 }
 
 /// Radiance leaving the surfel of a trace's result towards its probe, W/(m^2 sr). Bilinear over the texels that lie on the surfel's own
@@ -31,10 +40,10 @@ SCONCE_FN vec3 surfelRadiance(SCONCE_IN(TraceResult) hit)
         int tx = x0 + (tap & 1);
         int ty = y0 + (tap >> 1);
         real weight = ((tap & 1) != 0 ? fx : real(1.0) - fx) * ((tap >> 1) != 0 ? fy : real(1.0) - fy) + real(1e-4);
-        real q = halfToReal(distanceWord(faceWords + uint(ty * size + tx)));
+        real q = halfToReal(texelWord(faceWords, uint(tx), uint(ty)));
         real expected = qc * (real(1.0) + gx * (real(tx) - cx) + gy * (real(ty) - cy));
         if (abs(q - expected) > real(0.02) * qc && (real(tx) != cx || real(ty) != cy)) continue;
-        sum += weight * unpackRadiance(radianceWord(radianceIndex(hit.probe, hit.face, tx, ty)));
+        sum += weight * mapRadiance(hit.probe, hit.face, tx, ty);
         weights += weight;
     }
     return sum / max(weights, real(1e-6));
@@ -98,7 +107,7 @@ SCONCE_FN vec3 planeSeen(uint probe, vec3 direction)
     real last = real(field.faceSize) - real(1.0);
     real x = clamp(floor(middle * (uvw.x / uvw.z + real(1.0))), real(0.0), last);
     real y = clamp(floor(middle * (uvw.y / uvw.z + real(1.0))), real(0.0), last);
-    uint word = distanceWord(mapWords(probe, face) + uint(y) * field.faceSize + uint(x));
+    uint word = texelWord(mapWords(probe, face), uint(x), uint(y));
     real gx = unpackGradient(word >> 16);
     real gy = unpackGradient(word >> 24);
     real inMiddle = real(1.0) + gx * (middle - x - real(0.5)) + gy * (middle - y - real(0.5)); // of the face, over q of the texel's centre

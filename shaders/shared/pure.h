@@ -19,6 +19,9 @@ template <class Real> struct Pure
     using vec2f = glm::vec2;
 #include "shared/pure_text.h"
 
+#include "shared/distance_block.h"
+#include "shared/radiance_block.h"
+
 #include "shared/brdf_text.h"
 #include "shared/normal_map.h"
 #include "shared/polygon_light.h"

@@ -50,7 +50,7 @@ SCONCE_FN SurfacePoint surfacePointOf(uint probe, int face, int x, int y, uint s
     real finer = real(field.faceSize) / real(side);
     real fx = floor((real(x) + real(0.5)) * finer);
     real fy = floor((real(y) + real(0.5)) * finer);
-    uint word = distanceWord(mapWords(probe, face) + uint(fy) * field.faceSize + uint(fx));
+    uint word = texelWord(mapWords(probe, face), uint(fx), uint(fy));
     real toUnit = real(2.0) / real(field.faceSize);
     real q = halfToReal(word);
     p.width = real(0.0);

@@ -4,6 +4,7 @@
 #include "bench/race/ray_file.h"
 #include "bench/reference/image_io.h"
 #include "runtime/bake/bake_journal.h"
+#include "runtime/field/map_blocks.h"
 #include "tests/fuzzers/field_blocks.h"
 #include "tests/support/files.h"
 #include "tests/support/small_field.h"
@@ -27,6 +28,13 @@ FieldData liveField()
     field.live.tints.resize(gpu::kTints);
     field.live.albedo.resize((6 * half * half * field.info.probeCount + 1) / 2);
     field.live.lights.push_back({.name = "sun"});
+    return field;
+}
+
+FieldData compactField()
+{
+    FieldData field = testing_support::smallField(gpu::kChartCube, 8, 1);
+    if (const Status put = putInBlocks(field); !put) std::fprintf(stderr, "%s\n", put.error().message.c_str());
     return field;
 }
 
@@ -69,6 +77,7 @@ int main(int count, char** arguments)
     rays.directions.assign(2, vec3(0.0f, 1.0f, 0.0f));
     const bool done = writeField(testing_support::smallField(gpu::kChartCube, 8, 1), folder + "field/cube") &&
                       writeField(testing_support::smallField(gpu::kChartOctahedral, 16, 1), folder + "field/octahedral") &&
+                      writeField(compactField(), folder + "field/compact") &&
                       writeField(testing_support::groupedField(), folder + "field/groups") &&
                       writeField(liveField(), folder + "field/live") && writeJournal(folder + "journal/open") &&
                       writePicture(folder + "exr/layers") && saveRays(rays, folder + "rays/race");

@@ -683,6 +683,9 @@ TEST(Command, LightsMoveAfterTheBake)
     expectSentence(
         sconceCommand({"capture", "cornell-glossy", "--probes", folder / "p.json", "--live-links", "0", "-o", folder / "x.sconce"}), 2,
         "live links");
+    expectSentence(sconceCommand({"bake", "cornell-glossy", "--probes", folder / "p.json", "--live-links", "8", "--compact", "-o",
+                                  folder / "x.sconce"}),
+                   2, "compact");
 
     // A pixel is not explained by light that its field doesn't have.
     const auto explained = [&](const char* field, const std::string& by) {

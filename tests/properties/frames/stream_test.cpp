@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/field/field_stream.h"
+#include "runtime/field/map_blocks.h"
 #include "scene/builtin_scenes.h"
 #include "tests/properties/frames/frame_test.h"
 #include "tests/properties/hard_cases/hard_case.h"
@@ -135,6 +136,22 @@ TEST_F(Streaming, AllMapsAreThePictureOfTheWholeField)
     EXPECT_EQ(frame->diffuseIndirect, truth.diffuseIndirect);
     EXPECT_EQ(frame->glossyIndirect, truth.glossyIndirect);
     EXPECT_TRUE(streamed->stream.status());
+}
+
+TEST_F(Streaming, MapsInBlocksComeTheSameWayAndMakeNearlyThePictureOfTexels)
+{
+    const RenderedFrame texels = whole();
+    ASSERT_TRUE(putInBlocks(baked));
+    ASSERT_TRUE(saveField(baked, file));
+    const RenderedFrame blocks = whole();
+    EXPECT_LT(errorOf(blocks.diffuseIndirect, texels.diffuseIndirect), 1e-4);
+    EXPECT_LT(errorOf(blocks.glossyIndirect, texels.glossyIndirect), 1e-3);
+    auto streamed = open(uint32_t(baked.probes.size()));
+    ASSERT_TRUE(streamed) << streamed.error().message;
+    const auto frame = settle(*streamed);
+    ASSERT_TRUE(frame) << frame.error().message;
+    EXPECT_EQ(frame->diffuseIndirect, blocks.diffuseIndirect);
+    EXPECT_EQ(frame->glossyIndirect, blocks.glossyIndirect);
 }
 
 // A quarter of the probes: those that the picture asks for most.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bake/bake.h"
+#include "runtime/field/map_blocks.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/mesh_builder.h"
 #include "shaders/shared/pure.h"
@@ -568,6 +569,24 @@ TEST_F(Bake, MoreMainMemoryThanAnyMachineHasIsRefused)
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::outOfMemory);
     EXPECT_NE(field.error().message.find("65535 probes"), std::string::npos) << field.error().message;
+}
+
+TEST_F(Bake, CompactIsTheSameBakePutInBlocks)
+{
+    const std::vector<vec3> probes(2, vec3(0.0f));
+    BakeSettings settings = settingsFor(64, 1);
+    auto texels = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    settings.compact = true;
+    const auto blocks = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    ASSERT_TRUE(texels && blocks);
+    ASSERT_TRUE(putInBlocks(*texels));
+    EXPECT_EQ(texels->distance, blocks->distance);
+    EXPECT_EQ(texels->radiance, blocks->radiance);
+    EXPECT_EQ(texels->surfaceLight, blocks->surfaceLight);
+    settings.chart = gpu::kChartOctahedral;
+    const auto refused = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("compact"), std::string::npos) << refused.error().message;
 }
 
 TEST_F(Bake, WithoutShadowMapsOfAreaLightIsRefused)

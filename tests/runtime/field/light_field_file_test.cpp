@@ -17,6 +17,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "runtime/field/map_blocks.h"
 #include "tests/support/small_field.h"
 
 using namespace sconce;
@@ -156,6 +157,26 @@ TEST_F(LightFieldFile, MapsComeProbeByProbe)
     EXPECT_EQ(opened->maps.radianceWords(), 0u);
     std::vector<uint32_t> distance(opened->maps.distanceWords());
     EXPECT_TRUE(opened->maps.read(2, distance, {}));
+}
+
+TEST_F(LightFieldFile, MapsInBlocksComeBackWholeAndProbeByProbe)
+{
+    FieldData field = smallField(gpu::kChartCube, 16, 5);
+    ASSERT_TRUE(putInBlocks(field));
+    EXPECT_EQ(bytesByPart(field).distance, 5u * 6u * 4u * (16 * 8 + 16 + 1 + 9)) << "16 blocks, two levels, 17 far bounds";
+    EXPECT_EQ(bytesByPart(field).radiance - bytesByPart(field).prefiltered, 5u * 6u * 16u * 16u);
+    ASSERT_TRUE(saveField(field, file));
+    const Result<FieldData> back = loadField(file);
+    ASSERT_TRUE(back) << back.error().message;
+    expectSame(*back, field);
+    EXPECT_EQ(back->fileVersion, kFieldFileVersion);
+    auto opened = openField(file);
+    ASSERT_TRUE(opened) << opened.error().message;
+    std::vector<uint32_t> distance(opened->maps.distanceWords()), radiance(opened->maps.radianceWords());
+    ASSERT_EQ(radiance.size() * 5, field.radiance.size());
+    ASSERT_TRUE(opened->maps.read(3, distance, radiance));
+    EXPECT_TRUE(std::ranges::equal(distance, std::span(field.distance).subspan(3 * distance.size(), distance.size())));
+    EXPECT_TRUE(std::ranges::equal(radiance, std::span(field.radiance).subspan(3 * radiance.size(), radiance.size())));
 }
 
 TEST_F(LightFieldFile, MapsThatMayChangeOrAreOctahedralDoNotStream)
