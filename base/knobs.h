@@ -319,7 +319,7 @@ inline constexpr Knob<bool> compact{.name = "compact",
                                     .member = "BakeSettings::compact",
                                     .value = false,
                                     .what = "Keeps the probes' maps in blocks of 4x4 texels: of cube faces whose light doesn't change",
-                                    .buys = "a third of their memory; rays that unpack them",
+                                    .buys = "0.4 of their memory; rays, which unpack them, take longer",
                                     .readme = true};
 inline constexpr uint32_t kLampTexels[] = {0, 512, 1024, 2048, 4096, 8192};
 inline constexpr Knob<uint32_t> lampTexels{

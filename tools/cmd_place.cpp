@@ -26,14 +26,16 @@ struct PlaceOptions
     std::string pins;
     uint64_t memory = knobs::mapBytes.value;       // bytes; 0: no budget
     uint32_t resolution = knobs::resolution.value; // what the budget is counted for
+    bool compact = knobs::compact.value;           // and that
     QualityOption quality;
 };
 
 /// As many probes as the budget holds. Errors: badArgument with the bytes that one needs.
-Result<uint32_t> countFor(uint64_t memory, uint32_t resolution)
+Result<uint32_t> countFor(uint64_t memory, uint32_t resolution, bool compact)
 {
     // The scene is read later: as if it had normal textures, which take a few bytes more.
-    const uint64_t each = bytesPerProbe(gpu::kChartCube, resolution, knobs::surfaceTexels.value, true);
+    const uint64_t each =
+        bytesPerProbe(gpu::kChartCube, resolution, knobs::surfaceTexels.value, true, knobs::surfaceRefined.value, compact);
     if (memory < each)
         return Error{ErrorCode::badArgument,
                      fmt::format("--memory is {} bytes, but one probe takes {} at --resolution {}; raise the one or lower the other.",
@@ -101,7 +103,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     }
     if (options.memory > 0)
     {
-        const Result<uint32_t> count = countFor(options.memory, resolution);
+        const Result<uint32_t> count = countFor(options.memory, resolution, options.compact);
         if (!count) return fail(count.error());
         settings.count = *count;
     }
@@ -211,6 +213,8 @@ void addPlaceCommand(CLI::App& app, Context& context)
     addKnob(command, "--memory", options->memory, knobs::mapBytes, "BYTES")->excludes(count);
     addKnob(command, "--resolution", options->resolution, knobs::resolution, "TEXELS",
             "That the field will be baked with; only --memory asks");
+    command->add_flag("--compact", options->compact,
+                      described("That the field will be baked so; only --memory asks", defaultText(knobs::compact)));
     command
         ->add_option(
             "--pin", options->pins,

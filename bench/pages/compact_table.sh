@@ -10,7 +10,7 @@ scenes=${SCONCE_SCENES:-../shared/scenes} out=${OUT:-out/compact} size=${SIZE:-3
 [[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command sconce_ray_accuracy >&2
 sconce=${SCONCE:-build/release/tools/sconce} accuracy=${ACCURACY:-build/release/bench/race/sconce_ray_accuracy}
 list=("$@")
-[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 town=64 sponza/Sponza.gltf=54 modern_hall/modern_hall.glb=50)
+[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 sponza/Sponza.gltf=54)
 mkdir -p "$out"
 tables=()
 for entry in "${list[@]}"; do

@@ -83,11 +83,12 @@ uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels
     return chart == gpu::kChartCube ? std::min(surfaceTexels, faceSize) : 0;
 }
 
-size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels, bool directions, float refined)
+size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels, bool directions, float refined, bool compact)
 {
     const uint32_t size = chartSize(chart, resolution), surface = surfaceSizeOf(chart, size, surfaceTexels);
-    const size_t words =
-        size_t(distanceWordsPerProbe(chart, size)) + radianceWordsPerProbe(chart, size) + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
+    const size_t maps = compact ? blockedDistanceWords(size) + radianceWordsPerProbe(chart, size) / 4
+                                : distanceWordsPerProbe(chart, size) + radianceWordsPerProbe(chart, size);
+    const size_t words = maps + kIrradianceWordsPerProbe + gpu::kPrefilteredWords;
     const size_t patches = chart == gpu::kChartCube && surface == 0 ? size_t(2) * gpu::kPatches : 0;
     const size_t cells = surface > 0 ? gpu::kCellWords * kCellsOfProbe : 0;
     const size_t texels = size_t(6) * surface * surface, tilts = directions ? texels / 2 : 0;

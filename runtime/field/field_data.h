@@ -118,8 +118,9 @@ uint32_t chartSize(uint32_t chart, uint32_t resolution);
 /// Bytes that every further probe adds to a light field at most, index apart: what a budget of memory is divided by.
 /// @param surfaceTexels  BakeSettings::surfaceTexels
 /// @param directions     whether the scene has normal textures
+/// @param compact        whether its maps are in blocks, which octahedral ones can't be
 size_t bytesPerProbe(uint32_t chart, uint32_t resolution, uint32_t surfaceTexels = knobs::surfaceTexels.value, bool directions = false,
-                     float refined = knobs::surfaceRefined.value);
+                     float refined = knobs::surfaceRefined.value, bool compact = false);
 
 /// Texels a side of a face of the surface light that a bake makes, where so many are asked for; 0 with octahedral maps.
 uint32_t surfaceSizeOf(uint32_t chart, uint32_t faceSize, uint32_t surfaceTexels);

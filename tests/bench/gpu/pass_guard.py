@@ -7,6 +7,7 @@ RADV compiles for a GPU that isn't there (RADV_FORCE_FAMILY). PROGRAM is sconce_
 was found before. Fails where a pass takes more registers, over 3 % more instructions, spills more, or isn't in the file; another version of the driver
 makes other code, and is skipped. (The octree's ranking has arrays of its own, which count as spilled.) --write keeps what is found now.
 """
+import itertools
 import json
 import os
 import pathlib
@@ -18,7 +19,11 @@ SUBGROUPS = {"32": "cswave32", "64": "cs64"}  # lanes, and what RADV_PERFTEST ha
 MORE_INSTRUCTIONS = 1.03
 SKIPPED = 77
 TRACE = {"trace_glossy_comp", "trace_rays_comp"}
-BY_TEXELS = "0=4"  # kFieldFlagsId, kByTexels: words come through texel buffers
+# What a field is, as kFieldFlagsId says it, and the passes that are compiled for it; none: all.
+FORMS = {
+    "": ("0=4", set()),  # kByTexels: words come through texel buffers
+    ", compact": ("0=516", TRACE | {"surface_light_comp", "gather_light_comp"}),  # and kMapsInBlocks
+}
 
 
 def skip(why):
@@ -38,10 +43,11 @@ def found_now(program, build):
     if not files:
         sys.exit(f"no passes under {build}/shaders: build first")
     found, driver = {}, ""
-    for lanes, wish in SUBGROUPS.items():
+    for (lanes, wish), (form, (flags, only)) in itertools.product(SUBGROUPS.items(), FORMS.items()):
+        chosen = [file for file in files if not only or pathlib.Path(file).stem in only]
         environment = os.environ | {"VK_ICD_FILENAMES": radv(), "VK_DRIVER_FILES": radv(), "RADV_FORCE_FAMILY": FAMILY, "RADV_PERFTEST": wish}
         environment.pop("SCONCE_VALIDATION", None)  # nothing runs
-        done = subprocess.run([program, *files, "--constant", BY_TEXELS], env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run([program, *chosen, "--constant", flags], env=environment, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             sys.exit(f"{pathlib.Path(program).name} gave {done.returncode}: {done.stderr}")
         answer = json.loads(done.stdout)
@@ -50,7 +56,7 @@ def found_now(program, build):
             statistics = one["statistics"]
             if str(statistics["subgroup_size"]) != lanes:
                 sys.exit(f"{one['pass']} was compiled for {statistics['subgroup_size']} lanes, not {lanes}")
-            found.setdefault(one["pass"], {})[lanes] = {
+            found.setdefault(one["pass"] + form, {})[lanes] = {
                 "registers": statistics["VGPRs"],
                 "spilled": statistics["Spilled VGPRs"] + statistics["Spilled SGPRs"] + statistics["Scratch size"],
                 "instructions": statistics["Instructions"],

@@ -293,11 +293,17 @@ TEST(Command, PlaceHonoursPinsAndMemory)
 
     // What a probe takes is what a bake of one says it takes.
     ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "one.json", "--grid", "1x1x1", "-q"}).exit, 0);
-    const json baked = jsonOf(sconceCommand({"bake", "cornell", "--probes", folder / "one.json", "-o", folder / "one.sconce",
-                                             "--resolution", "64", "--bounces", "0", "--effects", "all", "--json"}));
-    const json bytes = baked.at("bytes");
-    const uint64_t maps = bytes.at("total").get<uint64_t>() - bytes.at("index").get<uint64_t>();
+    const auto bytesOf = [&](const char* form)
+    {
+        const json bytes = jsonOf(sconceCommand({"bake", "cornell", "--probes", folder / "one.json", "-o", folder / "one.sconce",
+                                                 "--resolution", "64", "--bounces", "0", "--effects", "all", "--json", form}))
+                               .at("bytes");
+        return bytes.at("total").get<uint64_t>() - bytes.at("index").get<uint64_t>();
+    };
+    const uint64_t compact = bytesOf("--compact"), maps = bytesOf("--quiet");
+    EXPECT_LT(compact, maps);
     EXPECT_EQ(jsonOf(place({"--resolution", "64", "--memory", std::to_string(maps * 4 + maps / 2)})).at("probes"), 4);
+    EXPECT_EQ(jsonOf(place({"--resolution", "64", "--compact", "--memory", std::to_string(compact * 4 + compact / 2)})).at("probes"), 4);
     expectSentence(place({"--resolution", "64", "--memory", std::to_string(maps / 2)}), 2, "--memory");
     expectSentence(place({"--resolution", "64", "--memory", std::to_string(maps + maps / 2)}), 2, "--pin");
     writeText(folder / "pins.json", R"({"probes":[{"position":[0.25,"a",0.25]}]})");
