@@ -316,14 +316,14 @@ def compact(arguments):
         row = {"label": f"{scene}, {probes} probes"} | {f"kib_{form}": f"{kib[form]:.0f}" for form in kib} | {"bytes_times": f"{kib['blocks'] / kib['texels']:.2f}"}
         for key in ("right_1", "right_02"):
             row |= {f"{key}_{form}": f"{100 * rays[form][key]:.2f}" for form in rays}
-            row[f"{key}_points"] = f"{100 * (rays['blocks'][key] - rays['texels'][key]):.2f}"
+            row[f"{key}_lost"] = f"{round(100 * (rays['texels'][key] - rays['blocks'][key]), 2) + 0.0:.2f}"
         for key in ("relmse", "flip"):
             row |= {f"{key}_{form}": f"{error[form][key]:.4f}" for form in error} | {f"{key}_times": f"{error['blocks'][key] / error['texels'][key]:.3f}"}
         row["mean_times"] = f"{error['blocks']['mean'] / error['texels']['mean']:.3f}"
         row |= {f"trace_ms_{form}": f"{trace[form]:.0f}" for form in trace} | {"trace_times": f"{trace['blocks'] / trace['texels']:.2f}"}
         rows[slug(scene)] = row
     own = list(rows.values())
-    rows["all"] = {"label": "all"} | {key: least_and_most([row[key] for row in own]) for key in own[0] if key.endswith(("_times", "_points"))}
+    rows["all"] = {"label": "all"} | {key: least_and_most([row[key] for row in own]) for key in own[0] if key.endswith(("_times", "_lost"))}
     write("compact.json", "Maps in blocks (bake --compact) beside the same maps in texels", ["bench/pages/compact_table.sh"],
           ["faces of 256, all that a field holds for a probe; right: within 1 % and 0.2 % of the diagonal, %, of the same glossy rays (GGX alpha 0.1 to 0.3), truth by Embree; reflections: "
            "every surface of roughness 0.2, all traced, 4 rays a pixel and the filter, against 128 paths of 4 bounces; trace: the pass's ms at 320x180, median of 8 frames, one form after the other"], rows)
