@@ -83,6 +83,8 @@ Status settle(const BakeOptions& options, const Context& context, Asked& asked)
     // After the plan, which asks what the whole scene calls for; what it gives up must leave no light in the field.
     capScene(asked.scene, *plan);
     settings.take(*plan, frame.effects.tracedDiffuse);
+    if (settings.compact && settings.chart != gpu::kChartCube) // before another bake that lends its light
+        return Error{ErrorCode::badArgument, "--compact puts cube faces in blocks; leave it out with --chart octahedral."};
     asked.lends = settings.chart == gpu::kChartOctahedral && settings.surfaceTexels > 0;
     if (options.gather != knobs::kGathers[0] || settings.surfaceTexels == 0) return success();
     auto built = TriangleRays::build(asked.scene);

@@ -20,6 +20,7 @@ The commit that is named is the checked-out one: run it where the bench's progra
 """
 import json
 import re
+import statistics
 import subprocess
 import sys
 from pathlib import Path
@@ -308,11 +309,13 @@ def compact(arguments):
     rows = {}
     for scene, at in (argument.split("=", 1) for argument in arguments):
         load = lambda end: json.loads(Path(f"{at}.{end}.json").read_text())
-        info, frame, error = ({form: load(f"{form}.{end}") for form in ("texels", "blocks")} for end in ("info", "render", "compare"))
+        info, error = ({form: load(f"{form}.{end}") for form in ("texels", "blocks")} for end in ("info", "compare"))
         rays = dict(zip(("texels", "blocks"), load("race")))
         probes = info["texels"]["probes"]
         kib = {form: info[form]["bytes"]["total"] / probes / 1024 for form in info}
-        trace = {form: frame[form]["passes_ms"]["glossy trace"] for form in frame}
+        turns = [{form: load(f"{form}.{turn}.render")["passes_ms"]["glossy trace"] for form in info} for turn in range(1, 6)]
+        trace = {form: statistics.median(turn[form] for turn in turns) for form in info}
+        times = statistics.median(turn["blocks"] / turn["texels"] for turn in turns)
         row = {"label": f"{scene}, {probes} probes"} | {f"kib_{form}": f"{kib[form]:.0f}" for form in kib} | {"bytes_times": f"{kib['blocks'] / kib['texels']:.2f}"}
         for key in ("right_1", "right_02"):
             row |= {f"{key}_{form}": f"{100 * rays[form][key]:.2f}" for form in rays}
@@ -320,13 +323,13 @@ def compact(arguments):
         for key in ("relmse", "flip"):
             row |= {f"{key}_{form}": f"{error[form][key]:.4f}" for form in error} | {f"{key}_times": f"{error['blocks'][key] / error['texels'][key]:.3f}"}
         row["mean_times"] = f"{error['blocks']['mean'] / error['texels']['mean']:.3f}"
-        row |= {f"trace_ms_{form}": f"{trace[form]:.0f}" for form in trace} | {"trace_times": f"{trace['blocks'] / trace['texels']:.2f}"}
+        row |= {f"trace_ms_{form}": f"{trace[form]:.0f}" for form in trace} | {"trace_times": f"{times:.2f}"}
         rows[slug(scene)] = row
     own = list(rows.values())
     rows["all"] = {"label": "all"} | {key: least_and_most([row[key] for row in own]) for key in own[0] if key.endswith(("_times", "_lost"))}
     write("compact.json", "Maps in blocks (bake --compact) beside the same maps in texels", ["bench/pages/compact_table.sh"],
           ["faces of 256, all that a field holds for a probe; right: within 1 % and 0.2 % of the diagonal, %, of the same glossy rays (GGX alpha 0.1 to 0.3), truth by Embree; reflections: "
-           "every surface of roughness 0.2, all traced, 4 rays a pixel and the filter, against 128 paths of 4 bounces; trace: the pass's ms at 320x180, median of 8 frames, one form after the other"], rows)
+           "every surface of roughness 0.2, all traced, 4 rays a pixel and the filter, against 128 paths of 4 bounces; trace: the pass's ms at 320x180, medians of five turns of 5 frames, one form after the other in each"], rows)
 
 
 def walls(arguments):

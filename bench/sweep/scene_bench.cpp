@@ -290,7 +290,8 @@ uint64_t SceneBench::bytesOf(const PointSettings& settings)
 {
     if (settings.pathTraced()) return 0;
     if (const std::optional<Volume> volume = settings.volume()) return uint64_t(settings.probes) * volumeWordsPerProbe(*volume) * 4;
-    return uint64_t(settings.probes) * bytesPerProbe(settings.chart(), settings.resolution, settings.bakedSurfaceTexels());
+    return uint64_t(settings.probes) * bytesPerProbe(settings.chart(), settings.resolution, settings.bakedSurfaceTexels(), false,
+                                                     knobs::surfaceRefined.value, settings.compact);
 }
 
 Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Progress& progress)

@@ -498,7 +498,7 @@ BakeSettings lendingBake(BakeSettings settings)
     settings.resolution = (settings.resolution + 31) / 32 * 32; // of cube faces
     settings.lampTexels = 0;
     settings.bounces = std::max(settings.bounces, 1u) - 1; // frames see its light scattered once more than its own maps do
-    settings.radiance = settings.prefiltered = false;
+    settings.radiance = settings.prefiltered = settings.compact = false;
     return settings;
 }
 
@@ -619,7 +619,11 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         if (settings.prefiltered) prefilterRadiance(bake.field);
         if (!settings.radiance) bake.field.radiance = {};
         if (settings.compact)
+        {
+            // Not asked for any more, and more than blocks take: what was counted to fit is enough.
+            for (std::vector<uint32_t>* words : {&bake.surfaces, &bake.direct, &bake.emitted}) std::vector<uint32_t>().swap(*words);
             if (auto status = putInBlocks(bake.field); !status) return status.error();
+        }
         // Where no frame reads it, it was made for what surfaces send to mirrors alone.
         if (!settings.readsSurfaces && !settings.layout && bake.field.lamps.empty()) dropSurfaceLight(bake.field);
         spent.prefilterSeconds = watch.lap();

@@ -157,7 +157,7 @@ Endpoints outermost(const Wanted& wanted)
 }
 
 /// Better ones nearby, one channel of one end at a time, until no step of one helps.
-float improve(const Wanted& wanted, Endpoints& ends, std::array<uint8_t, kTexels>& index, float error)
+void improve(const Wanted& wanted, Endpoints& ends, std::array<uint8_t, kTexels>& index, float error)
 {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds; ++round)
@@ -172,9 +172,8 @@ float improve(const Wanted& wanted, Endpoints& ends, std::array<uint8_t, kTexels
             const float now = nearest(wanted, tried, places);
             if (now < error) ends = tried, index = places, error = now, better = true;
         }
-        if (!better) break;
+        if (!better) return;
     }
-    return error;
 }
 
 std::array<uint32_t, 4> packed(Endpoints ends, std::array<uint8_t, kTexels> index)
