@@ -159,7 +159,9 @@ Result<TriangleRays> TriangleRays::build(const Scene& scene)
     for (uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle)
         if (state->presence[triangle] != Presence::absent)
             state->triangleOf[state->presence[triangle] == Presence::masked].push_back(triangle);
-    state->device = rtcNewDevice(nullptr);
+    // No wider than AVX2: kernels of other widths answer a few grazing rays otherwise, and one scene should be placed and baked alike on
+    // every processor of the last ten years.
+    state->device = rtcNewDevice("max_isa=avx2");
     if (!state->device)
         return Error{ErrorCode::deviceFailure,
                      fmt::format("Embree could not be started (error {}); check that the processor has SSE2 and memory is free.",
