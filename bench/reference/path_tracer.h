@@ -39,7 +39,6 @@ public:
     PathLight trace(vec3 origin, vec3 direction, vec3 textured, Random& random) const;
     PathLight trace(vec3 origin, vec3 direction, Random& random) const { return trace(origin, direction, direction, random); }
 
-private:
     struct Scatter // a sampled direction with both lobes' brdf * cosine / density
     {
         vec3 direction{0.0f};
@@ -47,8 +46,9 @@ private:
         vec3 specular{0.0f};
         float pdf = 0.0f; // over solid angle; 0 for the mirror's delta
     };
-
     std::optional<Scatter> scatter(const ShadingPoint& point, vec3 view, Random& random) const;
+
+private:
     float scatterPdf(const ShadingPoint& point, vec3 view, vec3 light) const;
     BrdfValue reflect(const ShadingPoint& point, vec3 view, vec3 light) const; // brdf * cosine
     vec3 punctual(const ShadingPoint& point, vec3 view, const Light& light) const;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The programs that race tracers, from end to end on one small light field.
 
-race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS FLY_THROUGH SOAK COMMAND
+race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS FIELD_PATHS FLY_THROUGH SOAK COMMAND
 
 sconce_tessellation cuts and bakes a scene; rays of it that sconce_ray_accuracy records have the same answers from sconce_replay.
-sconce_light_response switches the lamp of a live field. sconce_primary_rays looks into one from two places. sconce_fly_through flies
+sconce_light_response switches the lamp of a live field. sconce_primary_rays looks into one from two places, sconce_field_paths scatters light through one. sconce_fly_through flies
 through one with room for two of its three probes; sconce_soak draws many frames of it, and of one whose light moves.
 """
 import json
@@ -32,7 +32,7 @@ def untimed(rows):
 
 
 def main():
-    ray_accuracy, replay, tessellation, light_response, primary_rays, fly_through, soak, command = sys.argv[1:]
+    ray_accuracy, replay, tessellation, light_response, primary_rays, field_paths, fly_through, soak, command = sys.argv[1:]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         probes, rays = folder / "p.json", folder / "r.rays"
@@ -70,6 +70,20 @@ def main():
             expect(abs(sum(shares) - 1) < 1e-9 and shares[0] > 0.7 and mean["right_02"] < shares[0], f"{kind}: {mean}")
 
         small = ["--resolution", 64, "--surface-texels", 26, "--surface-rays", 16]
+        direct, truth = folder / "direct.sconce", folder / "truth.exr"
+        run(command, "bake", "cornell", "--probes", probes, *small, "--bounces", 0, "--live-links", 8, "-o", direct)
+        run(command, "reference", "cornell", "--size", "48x36", "--spp", 256, "--bounces", 1, "--pixel-centre", "--parts", "-o", truth)
+        walk = ["cornell", "--reference", truth, "--paths", 32]
+        walked = json.loads(run(field_paths, *walk, "--field", direct, "--rays", 2, "-o", folder / "walked.exr").stdout)
+        one, two = walked["rays"]
+        expect(0 < two["rays"] < one["rays"] <= 32 * 48 * 36 and min(one["right_1"], two["right_1"]) > 0.78, f"rays of paths are wrong: {walked}")
+        expect(abs(walked["path_tracer"]["diffuse_indirect"]["mean"] - 1) < 0.04, f"paths by triangles are not the reference's: {walked}")
+        expect(abs(walked["ours"]["diffuse_indirect"]["mean"] - 1) < 0.06, f"paths of two rays have other light than one bounce: {walked}")
+        short = json.loads(run(field_paths, *walk, "--field", direct).stdout)["ours"]["diffuse_indirect"]["mean"]
+        expect(short < walked["ours"]["diffuse_indirect"]["mean"] - 0.1, f"a second ray adds nothing: {short}, {walked}")
+        expect("no albedo" in run(field_paths, *walk, "--field", field, "--rays", 2, code=2).stderr, "a field without albedo is walked through")
+        expect("--camera is 99" in run(field_paths, *walk, "--field", direct, "--camera", 99, code=2).stderr, "a camera that isn't there")
+
         lit = folder / "lit.sconce"
         run(command, "bake", "cornell-glossy", "--probes", probes, *small, "-o", lit)
         flown = json.loads(run(fly_through, "cornell-glossy", "--field", lit, "--resident", 2, "--frames", 12, "--width", 32, "--height", 24).stdout)
