@@ -15,8 +15,7 @@
 #include <fmt/format.h>
 
 #include "base/listed.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 #include "tools/view/walk.h"
 
 namespace sconce::tools
@@ -301,16 +300,7 @@ void SceneOptions::addLight(CLI::App* command)
 
 Result<Scene> SceneOptions::load(const Context& context) const
 {
-    const std::vector<BuiltinScene> known = builtinScenes();
-    const std::string builtinNames = listed(known, &BuiltinScene::name);
-    const bool builtin = std::ranges::find(known, name, &BuiltinScene::name) != known.end();
-    const std::filesystem::path path(name);
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    if (!builtin && extension != ".gltf" && extension != ".glb")
-        return Error{ErrorCode::badInput,
-                     fmt::format("'{}' is neither a .gltf or .glb file nor a built-in scene ({}).", name, builtinNames)};
-    Result<Scene> scene = builtin ? makeBuiltinScene(name) : loadGltf(path, consoleProgress(context));
+    Result<Scene> scene = namedScene(name, consoleProgress(context));
     endProgress();
     if (!scene) return scene;
     for (const std::string& warning : scene->warnings) note(context, fmt::format("Note: {}", warning));

@@ -26,8 +26,7 @@
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/tracer_cpu.h"
 #include "runtime/vulkan/host_vulkan.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 #include "scene/view_rays.h"
 
 namespace sconce
@@ -335,7 +334,7 @@ Result<Json> Paths::run()
 
 Status run(const Options& options)
 {
-    Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
+    Result<Scene> scene = namedScene(options.scene);
     if (!scene) return scene.error();
     if (options.camera >= scene->cameras.size())
         return Error{ErrorCode::badArgument, fmt::format("--camera is {}, but scene '{}' has {}; give a smaller number", options.camera,

@@ -16,8 +16,7 @@
 #include "runtime/field/field_stream.h"
 #include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 
 namespace sconce
 {
@@ -136,7 +135,7 @@ nlohmann::ordered_json toJson(const Options& options, const std::vector<Flown>& 
 
 Status run(const Options& options)
 {
-    Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
+    Result<Scene> scene = namedScene(options.scene);
     if (!scene) return scene.error();
     auto all = loadField(options.field);
     if (!all) return all.error();

@@ -18,8 +18,7 @@
 #include "placement/free_space.h"
 #include "placement/visibility.h"
 #include "runtime/vulkan/host_vulkan.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 #include "scene/view_rays.h"
 
 namespace sconce
@@ -179,7 +178,7 @@ Result<Json> scoreViews(TracedMethod& method, const RayScene& truth, std::span<c
 
 Status run(const Options& options)
 {
-    Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
+    Result<Scene> scene = namedScene(options.scene);
     if (!scene) return scene.error();
     const auto truth = RayScene::create(*scene);
     if (!truth) return truth.error();

@@ -13,8 +13,7 @@
 #include "bench/race/ray_file.h"
 #include "bench/race/scene_rays.h"
 #include "bench/race/tracer_race.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 
 namespace sconce
 {
@@ -40,7 +39,7 @@ Result<RaySet> raysOf(const Options& options, const Scene& scene, const RayScene
 
 Status run(const Options& options)
 {
-    Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
+    Result<Scene> scene = namedScene(options.scene);
     if (!scene) return scene.error();
     auto truth = RayScene::create(*scene);
     if (!truth) return truth.error();

@@ -19,8 +19,7 @@
 #include "runtime/field/live_light.h"
 #include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 
 namespace sconce
 {
@@ -49,8 +48,8 @@ uint64_t processBytes()
 class Soak
 {
 public:
-    Soak(Gpu& device, const Scene& drawn, FieldData loaded, const Options& wanted)
-        : gpu(device), scene(drawn), data(std::move(loaded)), options(wanted), flight(data)
+    Soak(Gpu& used, const Scene& drawn, FieldData loaded, const Options& wanted)
+        : gpu(used), scene(drawn), data(std::move(loaded)), options(wanted), flight(data)
     {
     }
 
@@ -146,7 +145,7 @@ private:
 
 Status run(const Options& options, bool& same)
 {
-    Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
+    Result<Scene> scene = namedScene(options.scene);
     if (!scene) return scene.error();
     FieldData data;
     std::optional<MapFile> maps;
@@ -180,8 +179,8 @@ Status run(const Options& options, bool& same)
     const auto last = soak.settled();
     if (!last) return last.error();
     const bool judged = !soak.lacksRoom();
-    const bool alike = !judged || first->beauty == last->beauty && first->diffuseIndirect == last->diffuseIndirect &&
-                                      first->glossyIndirect == last->glossyIndirect;
+    const bool alike = !judged || (first->beauty == last->beauty && first->diffuseIndirect == last->diffuseIndirect &&
+                                   first->glossyIndirect == last->glossyIndirect);
     const bool flat = deviceAfter == deviceBefore && double(processAfter) < kMostGrowth * double(processBefore);
     same = alike && flat;
     const nlohmann::ordered_json json = {{"frames", options.frames},

@@ -13,8 +13,7 @@
 #include "runtime/bake/bake.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/vulkan/host_vulkan.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 
 namespace sconce
 {
@@ -67,7 +66,7 @@ void cutTo(Scene& scene, size_t count)
 
 Status run(Options& options)
 {
-    Result<Scene> scene = options.scene.find('.') == std::string::npos ? makeBuiltinScene(options.scene) : loadGltf(options.scene);
+    Result<Scene> scene = namedScene(options.scene);
     if (!scene) return scene.error();
     auto probes = loadProbes(options.probes);
     if (!probes) return probes.error();

@@ -20,8 +20,7 @@
 #include "base/random.h"
 #include "placement/place.h"
 #include "placement/skeleton.h"
-#include "scene/builtin_scenes.h"
-#include "scene/scene_gltf.h"
+#include "scene/named_scene.h"
 #include "tests/placement/yardstick.h"
 
 namespace sconce
@@ -175,7 +174,7 @@ int main(int argc, char** argv)
         return std::fprintf(stderr, "usage: sconce_placement_table SCENE COUNT [COUNT...] [--rows NAME,NAME...] [--save PREFIX] "
                                     "[--seed N]\n"),
                2;
-    Result<Scene> scene = words[0].find('.') == std::string::npos ? makeBuiltinScene(words[0]) : loadGltf(words[0]);
+    Result<Scene> scene = namedScene(words[0]);
     if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 3;
     Result<Visibility> visibility = Visibility::build(*scene);
     if (!visibility) return std::fprintf(stderr, "%s\n", visibility.error().message.c_str()), 3;
