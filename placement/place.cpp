@@ -267,26 +267,74 @@ std::string faultOfPins(const LegalSpace& legal, float clearance)
     return {};
 }
 
-Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibility, const FreeSpace& space, const PlaceSettings& settings,
-                                 PlaceReport& report, const Progress& progress)
+/// Probes among candidates on the skeleton of the free space, spread in it, and before gaps: chosen by what they see, then moved.
+class SkeletonPlacement
 {
-    const float clearance = settings.clearance > 0.0f ? settings.clearance : space.field.voxel;
-    report.clearance = clearance;
-    // Pinned probes are never moved, so a place that no probe may take is refused here rather than mended later.
-    const LegalSpace legal{visibility, space, settings.pins};
-    if (const std::string fault = faultOfPins(legal, clearance); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+public:
+    SkeletonPlacement(const Scene& placedIn, const Visibility& seen, const FreeSpace& reachable, const PlaceSettings& asked,
+                      PlaceReport& told, const Progress& heard)
+        : scene(placedIn), visibility(seen), space(reachable), settings(asked), report(told),
+          progress(heard), legal{seen, reachable, asked.pins}, clearance(asked.clearance > 0.0f ? asked.clearance : reachable.field.voxel),
+          // Kept probes are among those asked for, added ones stand beside them.
+          count(asked.count ? asked.count + uint32_t(numberOf(asked.pins, Pin::Kind::add)) : 0),
+          spacing(probeSpacing(reachable, count ? count : knobs::kGridCount)),
+          // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
+          comfort(std::max(clearance, kComfort * spacing)),
+          planned(std::max(double(asked.candidates), 3.5 * double(count))) // many probes need many candidates
+    {
+    }
+
+    Result<ProbeSet> run()
+    {
+        report.clearance = clearance;
+        report.comfort = comfort;
+        // Pinned probes are never moved, so a place that no probe may take is refused here rather than mended later.
+        if (const std::string fault = faultOfPins(legal, clearance); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+        if (!sconce::report(progress, "skeleton", 0.0)) return cancelled();
+        if (auto status = findCandidates(); !status) return status.error();
+        if (auto status = see(); !status) return status.error();
+        if (!sconce::report(progress, "choice", 0.0)) return cancelled();
+        choose(settings.coverage);
+        if (count == 0)
+            if (auto status = meetTheCoverage(); !status) return status.error();
+        return moved();
+    }
+
+private:
+    static Error cancelled() { return Error{ErrorCode::cancelled, "The placement was cancelled."}; }
+
+    Status findCandidates();
+    /// What every candidate sees, with those before the gaps that a first choice leaves.
+    Status see();
+    void choose(float target);
+    Status meetTheCoverage();
+    Result<ProbeSet> moved();
+
+    const Scene& scene;
+    const Visibility& visibility;
+    const FreeSpace& space;
+    const PlaceSettings& settings;
+    PlaceReport& report;
+    const Progress& progress;
+    const LegalSpace legal;
+    const float clearance; // metres, as all lengths here
+    const uint32_t count;  // 0: as many as the coverage takes
+    const float spacing, comfort;
+    const double planned; // candidates
+    std::vector<Candidate> candidates;
+    size_t pinned = 0; // of them, the first
+    ViewTable table;
+    std::vector<uint32_t> chosen;
+    std::vector<Surfel> gaps;
+};
+
+Status SkeletonPlacement::findCandidates()
+{
     // Ahead of all others: every step below takes the first so many candidates as chosen and leaves them where they are.
-    std::vector<Candidate> candidates = pinnedCandidates(settings.pins);
-    const size_t pinned = candidates.size();
-    // Kept probes are among those asked for, added ones stand beside them.
-    const uint32_t count = settings.count ? settings.count + uint32_t(numberOf(settings.pins, Pin::Kind::add)) : 0;
-    // Probes near a wall see the rest of it at a flat angle, so most keep away from walls; those before gaps may need to be near.
-    const float comfort = std::max(clearance, kComfort * probeSpacing(space, count ? count : knobs::kGridCount));
-    report.comfort = comfort;
+    candidates = pinnedCandidates(settings.pins);
+    pinned = candidates.size();
     // Of both kinds: ridges are few and see far, spread ones are wherever ridges of small cells are missing. A seed of its own for each
     // step: no two draw the same places.
-    if (!sconce::report(progress, "skeleton", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
-    const double planned = std::max(double(settings.candidates), 3.5 * double(count)); // many probes need many candidates
     const size_t onSkeleton = size_t(planned * kRidgeShare);
     for (const Candidate& candidate : settings.method == PlaceSettings::Method::balls
                                           ? ballCandidates(scene, legal, onSkeleton, comfort, settings.seed ^ 0x62616c6c73ull)
@@ -294,13 +342,15 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
         candidates.push_back(candidate);
     for (const Candidate& candidate : spreadCandidates(legal, size_t(planned * kSpreadShare), comfort, settings.seed ^ 0x737072656164ull))
         candidates.push_back(candidate);
-    if (candidates.empty())
-        return Error{ErrorCode::badInput,
-                     fmt::format("Scene '{}' has no free position {} m away from all surfaces and outside forbidden places; lower the "
-                                 "clearance, forbid less, or raise the number of voxels (a cell is {} m).",
-                                 scene.name, clearance, space.field.voxel)};
+    if (!candidates.empty()) return success();
+    return Error{ErrorCode::badInput,
+                 fmt::format("Scene '{}' has no free position {} m away from all surfaces and outside forbidden places; lower the "
+                             "clearance, forbid less, or raise the number of voxels (a cell is {} m).",
+                             scene.name, clearance, space.field.voxel)};
+}
 
-    const float spacing = probeSpacing(space, count ? count : knobs::kGridCount);
+Status SkeletonPlacement::see()
+{
     // The table of views has a byte for each candidate and surfel: where candidates are many, surfels must be fewer.
     const size_t budget = size_t(std::min(double(settings.surfels), std::max(double(kTableBytes) / planned, 8000.0)));
     std::vector<Surfel> surfels = mixedSurfels(scene, visibility, space, budget / 4, settings.seed);
@@ -308,11 +358,9 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
         return Error{ErrorCode::badInput,
                      fmt::format("No ray from the free space of scene '{}' hits a surface; check --inside.", scene.name)};
     // A first choice by few samples tells which places few probes see; those decide the second, of many.
-    ViewTable table;
     const ViewTargets few(visibility, std::move(surfels), spacing);
-    if (const Status done = extendTable(table, visibility, few, candidates, progress); !done) return done.error();
-    std::vector<uint32_t> chosen = chooseGreedily(table, count, settings.coverage, pinned);
-    std::vector<Surfel> gaps;
+    if (auto done = extendTable(table, visibility, few, candidates, progress); !done) return done;
+    chosen = chooseGreedily(table, count, settings.coverage, pinned);
     const ViewTargets targets =
         stratifiedTargets(visibility, mixedSurfels(scene, visibility, space, kDraws * budget, settings.seed ^ 0x64726177ull),
                           positionsOf(candidates, chosen), budget / 2, spacing, gaps);
@@ -320,55 +368,54 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
         candidates.push_back(candidate);
     // Anew, not extended: the rows are of other surfels now.
     table = {};
-    if (const Status done = extendTable(table, visibility, targets, candidates, progress); !done) return done.error();
+    if (auto done = extendTable(table, visibility, targets, candidates, progress); !done) return done;
 
     // What all candidates together see bounds every choice among them; the search for a target below ends there.
     std::vector<uint32_t> all(candidates.size());
     for (uint32_t c = 0; c < all.size(); ++c) all[c] = c;
-    const std::vector<uint8_t> bestOfAll = bestValues(table, all);
     report.candidates = candidates.size();
-    report.bestPossible = shareSeen(bestOfAll, targets.weights);
+    report.bestPossible = shareSeen(bestValues(table, all), targets.weights);
     // Only now, since the candidates before gaps count, too.
-    if (count > candidates.size())
-        return Error{ErrorCode::badArgument,
-                     fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
-                                 "count or the clearance.",
-                                 count, candidates.size(), clearance)};
+    if (count <= candidates.size()) return success();
+    return Error{ErrorCode::badArgument,
+                 fmt::format("{} probes are asked for, but only {} positions with a clearance of {} m were found; lower the "
+                             "count or the clearance.",
+                             count, candidates.size(), clearance)};
+}
 
-    const auto choose = [&](float target)
+void SkeletonPlacement::choose(float target)
+{
+    chosen = chooseGreedily(table, count, target, pinned);
+    if (count && chosen.size() <= kMostExchanged) improveByExchange(table, chosen, 2, pinned);
+    if (!count) pruneNeedless(table, chosen, pinned);
+}
+
+/// The choice is fitted to its surfels; other samples see a little less, so it aims higher until those are content, too.
+Status SkeletonPlacement::meetTheCoverage()
+{
+    float target = settings.coverage;
+    for (int round = 0; round < 6; ++round)
     {
-        chosen = chooseGreedily(table, count, target, pinned);
-        if (count && chosen.size() <= kMostExchanged) improveByExchange(table, chosen, 2, pinned);
-        if (!count) pruneNeedless(table, chosen, pinned);
-    };
-    if (!sconce::report(progress, "choice", 0.0)) return Error{ErrorCode::cancelled, "The placement was cancelled."};
-    choose(settings.coverage);
-    if (count == 0)
-    {
-        // The choice is fitted to its surfels; other samples see a little less, so aim higher until those are content too.
-        float target = settings.coverage;
-        for (int round = 0; round < 6; ++round)
-        {
-            CoverageSettings check;
-            check.seed = settings.seed ^ 0x636865636bull;
-            const Result<Coverage> measured = measureCoverage(scene, visibility, space, positionsOf(candidates, chosen), check, {});
-            if (!measured) return measured.error();
-            if (measured->rays >= settings.coverage || target >= report.bestPossible) break;
-            target = std::min(report.bestPossible, target + std::max(settings.coverage - measured->rays, 1e-4f));
-            choose(target);
-        }
-        // A count is bounded by its knob; a coverage may need any number.
-        if (chosen.size() > kMostProbes)
-            return Error{ErrorCode::badInput, fmt::format("A coverage of {} needs {} probes, more than {}; lower the coverage.",
-                                                          settings.coverage, chosen.size(), kMostProbes)};
+        CoverageSettings check;
+        check.seed = settings.seed ^ 0x636865636bull;
+        const Result<Coverage> measured = measureCoverage(scene, visibility, space, positionsOf(candidates, chosen), check, {});
+        if (!measured) return measured.error();
+        if (measured->rays >= settings.coverage || target >= report.bestPossible) break;
+        target = std::min(report.bestPossible, target + std::max(settings.coverage - measured->rays, 1e-4f));
+        choose(target);
     }
+    // A count is bounded by its knob; a coverage may need any number.
+    if (chosen.size() <= kMostProbes) return success();
+    return Error{ErrorCode::badInput, fmt::format("A coverage of {} needs {} probes, more than {}; lower the coverage.", settings.coverage,
+                                                  chosen.size(), kMostProbes)};
+}
 
-    // From here on probes are positions: what follows moves them to where no candidate is.
+/// The choice was among sampled candidates: a probe may do better close by (Wang et al. 2019, section 3.3). From here on probes are
+/// positions, where no candidate is.
+Result<ProbeSet> SkeletonPlacement::moved()
+{
     std::vector<vec3> positions = positionsOf(candidates, chosen);
-    std::vector<Candidate::Origin> origins;
-    for (uint32_t candidate : chosen) origins.push_back(candidates[candidate].origin);
-    // The choice was among sampled candidates: a probe may do better close by (Wang et al. 2019, section 3.3). By fresh samples: those of
-    // the choice have been fitted to already.
+    // By fresh samples: those of the choice have been fitted to already.
     const ViewTargets refining = stratifiedTargets(
         visibility, mixedSurfels(scene, visibility, space, kDraws * settings.refineSurfels, settings.seed ^ 0x726566696e65ull), positions,
         settings.refineSurfels / 2, probeSpacing(space, positions.size()), gaps);
@@ -379,10 +426,10 @@ Result<ProbeSet> placeBySkeleton(const Scene& scene, const Visibility& visibilit
     optimise.comfort = comfort;
     optimise.seed = settings.seed;
     optimise.fixed = pinned;
-    if (const Status done = optimisePositions(legal, refining, positions, optimise, progress); !done) return done.error();
+    if (auto done = optimisePositions(legal, refining, positions, optimise, progress); !done) return done.error();
 
     std::vector<Candidate> final;
-    for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], origins[k]});
+    for (size_t k = 0; k < chosen.size(); ++k) final.push_back({positions[k], candidates[chosen[k]].origin});
     // By the positions as they are now; what the choice knew of them has been moved away from.
     return explained(visibility, refining, final, report);
 }
@@ -426,7 +473,7 @@ Result<ProbeSet> placeProbes(const Scene& scene, const PlaceSettings& settings, 
 
     const bool isGrid = settings.method == PlaceSettings::Method::grid;
     Result<ProbeSet> set = isGrid ? placeGrid(scene, *visibility, *space, settings, report, progress)
-                                  : placeBySkeleton(scene, *visibility, *space, settings, report, progress);
+                                  : SkeletonPlacement(scene, *visibility, *space, settings, report, progress).run();
     if (!set) return set;
     set->method = isGrid ? "grid" : settings.method == PlaceSettings::Method::balls ? "balls" : "sdf";
     set->scene = scene.name;

@@ -87,13 +87,13 @@ std::string nameOf(const OpenSpace& open, const std::string& walk, float ground)
     return fmt::format("{},{},{},{},{},{}", low.x, low.y, low.z, high.x, high.y, high.z);
 }
 
-int runPlace(const PlaceOptions& options, const Context& context)
+/// The settings with what a file of them, a budget and pins say. Errors: badArgument, fileError, badInput.
+Result<PlaceSettings> settingsOf(const PlaceOptions& options)
 {
-    const Stopwatch watch;
     PlaceSettings settings = options.settings;
     uint32_t resolution = options.resolution;
     const Result<std::optional<PointSettings>> quality = options.quality.load();
-    if (!quality) return fail(quality.error());
+    if (!quality) return quality.error();
     if (*quality)
     {
         options.quality.take("--resolution", resolution, (*quality)->resolution);
@@ -104,57 +104,32 @@ int runPlace(const PlaceOptions& options, const Context& context)
     if (options.memory > 0)
     {
         const Result<uint32_t> count = countFor(options.memory, resolution, options.compact);
-        if (!count) return fail(count.error());
+        if (!count) return count.error();
         settings.count = *count;
     }
-    // Pins before the scene, which takes longer to read than they take to be refused.
-    if (!options.pins.empty())
-    {
-        Result<std::vector<Pin>> pins = loadPins(options.pins);
-        if (!pins) return fail(pins.error());
-        settings.pins = std::move(*pins);
-        // Added probes stand beside the count, so the budget's count must leave room for them. It may not fall to 0, which would ask for as
-        // many as the coverage takes.
-        const auto added =
-            std::count_if(settings.pins.begin(), settings.pins.end(), [](const Pin& pin) { return pin.kind == Pin::Kind::add; });
-        if (options.memory > 0 && uint64_t(added) >= settings.count)
-            return fail(
-                Error{ErrorCode::badArgument,
-                      fmt::format("--memory holds {} probes but --pin adds {}; raise the budget or add fewer.", settings.count, added)});
-        if (options.memory > 0) settings.count -= uint32_t(added); // added ones need memory, too
-    }
-    Result<Scene> scene = options.scene.load(context);
-    if (!scene) return fail(scene.error());
-    std::optional<Scene> walk;
-    std::optional<Visibility> onWalk;
-    if (!options.walk.empty())
-    {
-        Result<Scene> mesh = loadGltf(options.walk);
-        if (!mesh) return fail(mesh.error());
-        walk = std::move(*mesh);
-        Result<Visibility> seen = Visibility::build(*walk);
-        if (!seen) return fail(seen.error());
-        onWalk.emplace(std::move(*seen));
-        settings.open.walk = &*onWalk;
-    }
-    PlaceReport report;
-    Result<ProbeSet> set = placeProbes(*scene, settings, report, consoleProgress(context));
-    if (!set) return fail(set.error());
-    for (const std::string& warning : report.warnings) note(context, fmt::format("Note: {}", warning));
-    if (set->scene.empty()) set->scene = scene->name;
-    if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());
+    if (options.pins.empty()) return settings;
+    Result<std::vector<Pin>> pins = loadPins(options.pins);
+    if (!pins) return pins.error();
+    settings.pins = std::move(*pins);
+    if (options.memory == 0) return settings;
+    // Added probes stand beside the count, so the budget's count must leave room for them. It may not fall to 0, which would ask for as
+    // many as the coverage takes.
+    const auto added = uint64_t(std::ranges::count_if(settings.pins, [](const Pin& pin) { return pin.kind == Pin::Kind::add; }));
+    if (added >= settings.count)
+        return Error{ErrorCode::badArgument,
+                     fmt::format("--memory holds {} probes but --pin adds {}; raise the budget or add fewer.", settings.count, added)};
+    settings.count -= uint32_t(added);
+    return settings;
+}
 
-    // After the probes, which are then safe whatever becomes of the picture.
-    if (!options.explain.empty())
-        if (Status status = writePng(report.picture.rgb, report.picture.width, report.picture.height, options.explain); !status)
-            return fail(status.error());
-
-    // What a script judges the placement by; the lines for people are the part of it that tells whether to place anew.
+/// What a script judges the placement by; the lines for people are the part of it that tells whether to place anew.
+Json reportOf(const PlaceOptions& options, const ProbeSet& set, const PlaceReport& report)
+{
     Json json;
-    json["probes"] = set->probes.size();
-    json["method"] = set->method;
-    if (set->grid) json["grid"] = {set->grid->count.x, set->grid->count.y, set->grid->count.z};
-    json["seed"] = set->seed;
+    json["probes"] = set.probes.size();
+    json["method"] = set.method;
+    if (set.grid) json["grid"] = {set.grid->count.x, set.grid->count.y, set.grid->count.z};
+    json["seed"] = set.seed;
     json["coverage"] = {{"rays", report.coverageRays}, {"area", report.coverageArea}, {"best_possible", report.bestPossible}};
     json["median_cosine"] = report.medianCosine;
     json["median_distance"] = report.medianDistance;
@@ -167,11 +142,46 @@ int runPlace(const PlaceOptions& options, const Context& context)
     json["candidates"] = report.candidates;
     json["grid_outside"] = report.gridOutside;
     json["warnings"] = report.warnings;
+    return json;
+}
+
+int runPlace(const PlaceOptions& options, const Context& context)
+{
+    const Stopwatch watch;
+    // With the pins before the scene, which takes longer to read than they take to be refused.
+    Result<PlaceSettings> settings = settingsOf(options);
+    if (!settings) return fail(settings.error());
+    Result<Scene> scene = options.scene.load(context);
+    if (!scene) return fail(scene.error());
+    std::optional<Scene> walk;
+    std::optional<Visibility> onWalk;
+    if (!options.walk.empty())
+    {
+        Result<Scene> mesh = loadGltf(options.walk);
+        if (!mesh) return fail(mesh.error());
+        walk = std::move(*mesh);
+        Result<Visibility> seen = Visibility::build(*walk);
+        if (!seen) return fail(seen.error());
+        onWalk.emplace(std::move(*seen));
+        settings->open.walk = &*onWalk;
+    }
+    PlaceReport report;
+    Result<ProbeSet> set = placeProbes(*scene, *settings, report, consoleProgress(context));
+    if (!set) return fail(set.error());
+    for (const std::string& warning : report.warnings) note(context, fmt::format("Note: {}", warning));
+    if (set->scene.empty()) set->scene = scene->name;
+    if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());
+
+    // After the probes, which are then safe whatever becomes of the picture.
+    if (!options.explain.empty())
+        if (Status status = writePng(report.picture.rgb, report.picture.width, report.picture.height, options.explain); !status)
+            return fail(status.error());
+
+    Json json = reportOf(options, *set, report);
     addCost(json, watch);
     if (context.json)
         print(json);
     else
-    {
         std::cout << set->probes.size() << " probes (" << set->method << ") in " << options.output << "\n"
                   << "surface that rays hit and some probe sees: " << 100.0f * report.coverageRays << " %; by area "
                   << 100.0f * report.coverageArea << " %\n"
@@ -179,7 +189,6 @@ int runPlace(const PlaceOptions& options, const Context& context)
                   << " m^3, cells of " << report.voxel << " m; it leaves out " << 100.0f * report.surfaceLeftOut
                   << " % of the scene's surface\n"
                   << json["seconds"] << " s, " << json["peak_rss_mb"] << " MB" << std::endl;
-    }
     return exitOk;
 }
 

@@ -326,106 +326,210 @@ int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::strin
     return exitOk;
 }
 
+/// All that a picture is made of and that can be refused without a device, which takes longer to start than all of that together.
+struct Asked
+{
+    Scene scene;
+    Camera camera;
+    EffectPlan plan;
+    OpenedField opened;
+    Day lighting;
+    RenderSettings settings;
+    std::string diffuse; // how diffuse light is read
+    std::optional<ViewRays> fromField;
+};
+
+/// What stands on the device for it. Members go in the order in which they may: the last first.
+struct OnDevice
+{
+    std::optional<OwnDevice> device;
+    std::shared_ptr<Gpu> gpu;
+    std::optional<LightField> field;
+    std::optional<FieldStream> stream;
+    std::optional<LiveLight> live;
+    std::optional<double> groupsMs;
+    std::map<std::string, double> liveMs; // by pass
+};
+
+void noteWhatTheFieldLacks(const Asked& asked, const Context& context)
+{
+    const FieldData& data = asked.opened.data;
+    if (!data.sceneName.empty() && data.sceneName != asked.scene.name)
+        note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data.sceneName, asked.scene.name));
+    // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
+    for (const PlannedEffect& effect : asked.plan.effects)
+        if (effect.ofScene && !effect.givenUp.empty() && std::ranges::find(data.effects, effect.name) != data.effects.end())
+            note(context, fmt::format("Note: the light field was baked with {}, and what it holds of that stays in indirect light; bake "
+                                      "with the same --effects.",
+                                      effect.name));
+}
+
+Result<Asked> prepare(const RenderOptions& options, const Context& context)
+{
+    // Before the scene is loaded: a misspelt layer should cost no waiting.
+    if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : frameLayers()); !problem.empty())
+        return Error{ErrorCode::badArgument, problem};
+    const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
+    if (!groups) return groups.error();
+    const Result<std::vector<MovingShape>> shapes = options.shapes.read();
+    if (!shapes) return shapes.error();
+    Result<Scene> scene = options.scene.load(context);
+    if (!scene) return scene.error();
+    const Result<Camera> camera = options.camera.choose(*scene);
+    if (!camera) return camera.error();
+    std::optional<ViewRays> fromField;
+    if (options.fromField)
+    {
+        Result<ViewRays> rays = ViewRays::create(*camera, viewOf(options));
+        if (!rays) return rays.error();
+        fromField = std::move(*rays);
+    }
+    // The area pass has our tracer built in, which can't read an opponent's octahedral maps.
+    if (options.areaShadows == kField && options.tracer != "ours")
+        return Error{ErrorCode::badArgument,
+                     fmt::format("--area-shadows field is traced by our tracer; leave it out, or --tracer {}.", options.tracer)};
+    // The plan first, by what the whole scene calls for; what it gives up then goes, or it would leave shadow maps and passes behind.
+    Result<EffectPlan> plan = planFor(options, *scene);
+    if (!plan) return plan.error();
+    noteGivenUp(context, *plan);
+    Result<OpenedField> opened = openFor(options);
+    if (!opened) return opened.error();
+    auto lighting = chooseLight(options, opened->data, *groups, *scene);
+    if (!lighting) return lighting.error();
+    capScene(*scene, *plan); // after the groups have found their lights
+    std::string diffuse;
+    Result<RenderSettings> settings = settingsFor(options, *plan, opened->data, options.field, diffuse);
+    if (!settings) return settings.error();
+    settings->layers = wantsLayersOfLight(options.pictures.aov);
+    settings->width = options.width;
+    settings->height = options.height;
+    if (!options.drawnOnly) settings->shapes = *shapes;
+    addShapes(*scene, *shapes); // after the plan: they call for nothing
+    Asked asked{std::move(*scene),    *camera, std::move(*plan),    std::move(*opened), std::move(*lighting),
+                std::move(*settings), diffuse, std::move(fromField)};
+    noteWhatTheFieldLacks(asked, context);
+    return asked;
+}
+
+/// The field in its light.
+Status light(OnDevice& on, const Asked& asked)
+{
+    const Lighting& wanted = asked.lighting.light;
+    if (wanted.moves)
+    {
+        auto live = makeLiveLight(*on.gpu, *on.field, asked.opened.data);
+        if (!live) return live.error();
+        on.live = std::move(*live);
+        const auto settled = settle(*on.gpu, *on.live, {wanted.lights, wanted.weights});
+        if (!settled) return settled.error();
+        on.liveMs = *settled;
+    }
+    else if (!wanted.weights.empty())
+    {
+        const Result<double> dimmed = dimField(*on.gpu, *on.field, asked.opened.data, wanted.weights);
+        if (!dimmed) return dimmed.error();
+        on.groupsMs = *dimmed;
+    }
+    return success();
+}
+
+Status putOnDevice(OnDevice& on, const RenderOptions& options, const Quality& tracer, Asked& asked)
+{
+    Result<OwnDevice> device = OwnDevice::create({.device = options.device});
+    if (!device) return device.error();
+    on.device = std::move(*device);
+    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(on.device->host());
+    if (!gpu) return gpu.error();
+    on.gpu = std::move(*gpu);
+    OpenedField& opened = asked.opened;
+    Result<LightField> field = opened.maps ? makeStreamedField(*on.gpu, opened.data, std::move(*opened.maps), options.resident, tracer)
+                                           : makeLightField(*on.gpu, opened.data, tracer);
+    if (!field) return field.error();
+    on.field = std::move(*field);
+    if (options.resident > 0)
+    {
+        auto stream = makeFieldStream(*on.gpu, *on.field, {});
+        if (!stream) return stream.error();
+        on.stream = std::move(*stream);
+    }
+    return light(on, asked);
+}
+
+/// All that the picture depends on, so that it can be drawn again from what stands beside it, and what it took.
+Json reportOf(const RenderOptions& options, const Asked& asked, const OnDevice& on, const Drawn& drawn)
+{
+    const RenderSettings& settings = asked.settings;
+    Json json;
+    json["device"] = on.device->name();
+    json["tracer"] = options.tracer;
+    json["effects"] = Json::object();
+    for (const PlannedEffect& effect : asked.plan.effects) json["effects"][effect.name] = effect.on;
+    json["effects"]["denoise"] = settings.effects.denoise;
+    json["given_up"] = Json::object();
+    for (const PlannedEffect& effect : asked.plan.effects)
+        if (!effect.givenUp.empty()) json["given_up"][effect.name] = effect.givenUp;
+    json["device_bytes"] = drawn.deviceBytes;
+    json["samples"] = settings.glossyRays;
+    json["trace_every"] = settings.traceEvery;
+    json["surface_probes"] = settings.surfaceProbes;
+    json["rays_below"] = settings.raysBelow;
+    json["diffuse"] = asked.diffuse;
+    json["area_shadows"] = options.areaShadows;
+    json["temporal"] = settings.effects.temporal;
+    json["frames"] = options.frames;
+    json["dim"] = options.dims;
+    json["shapes"] = options.shapes.file;
+    json["drawn_only"] = options.drawnOnly;
+    if (on.groupsMs) json["light_groups_ms"] = *on.groupsMs;
+    if (on.live)
+    {
+        json["live_light_ms"] = on.liveMs;
+        json["live_device_bytes"] = on.live->deviceBytes();
+    }
+    if (drawn.streamed)
+        json["stream"] = {{"resident", drawn.streamed->resident},
+                          {"missing", drawn.streamed->missing},
+                          {"read", drawn.streamed->read},
+                          {"full", drawn.streamed->full},
+                          {"field_device_bytes", on.field->deviceBytes()}};
+    json["frame_ms"] = drawn.frameMs.empty() ? Json(nullptr) : Json(median(drawn.frameMs));
+    json["passes_ms"] = Json::object();
+    for (const std::string& pass : drawn.passes) json["passes_ms"][pass] = median(drawn.passMs.at(pass));
+    // Only the rays of reflections are counted, where layers tell what they cost; frames without have no means to give.
+    if (settings.layers && (settings.effects.glossy || settings.effects.mirror)) addCounts(json, drawn.frame, settings.glossyRays);
+    addDiffuseFrom(json, drawn.frame);
+    json["clamped_pixels"] = drawn.frame.clamped;
+    return json;
+}
+
+void sayTimes(const RenderOptions& options, const OnDevice& on, const Drawn& drawn)
+{
+    std::cout << options.pictures.output << ": " << options.width << "x" << options.height << " on " << on.device->name() << ", frame "
+              << (drawn.frameMs.empty() ? std::string("not timed") : fmt::format("{:f} ms", median(drawn.frameMs))) << "\n";
+    for (const std::string& pass : drawn.passes) std::cout << "  " << pass << ": " << median(drawn.passMs.at(pass)) << " ms\n";
+    std::cout << std::flush;
+}
+
 int runRender(RenderOptions options, const Context& context)
 {
     const Stopwatch watch;
     Quality tracer;
     if (const Status taken = takeQuality(options, tracer); !taken) return fail(taken.error());
-    // Before the scene is loaded: a misspelt layer should cost no waiting.
-    if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : frameLayers()); !problem.empty())
-        return fail(ErrorCode::badArgument, problem);
-    const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
-    if (!groups) return fail(groups.error());
-    const Result<std::vector<MovingShape>> shapes = options.shapes.read();
-    if (!shapes) return fail(shapes.error());
-    Result<Scene> scene = options.scene.load(context);
-    if (!scene) return fail(scene.error());
-    const Result<Camera> camera = options.camera.choose(*scene);
-    if (!camera) return fail(camera.error());
-    std::optional<ViewRays> fromField;
-    if (options.fromField)
+    Result<Asked> asked = prepare(options, context);
+    if (!asked) return fail(asked.error());
+    OnDevice on;
+    if (const Status status = putOnDevice(on, options, tracer, *asked); !status) return fail(status.error());
+    const FieldData& data = asked->opened.data;
+    if (asked->fromField)
     {
-        Result<ViewRays> rays = ViewRays::create(*camera, viewOf(options));
-        if (!rays) return fail(rays.error());
-        fromField = std::move(*rays);
-    }
-    // The area pass has our tracer built in, which can't read an opponent's octahedral maps.
-    if (options.areaShadows == kField && options.tracer != "ours")
-        return fail(ErrorCode::badArgument,
-                    fmt::format("--area-shadows field is traced by our tracer; leave it out, or --tracer {}.", options.tracer));
-    // The plan first, by what the whole scene calls for; what it gives up then goes, or it would leave shadow maps and passes behind.
-    const Result<EffectPlan> plan = planFor(options, *scene);
-    if (!plan) return fail(plan.error());
-    noteGivenUp(context, *plan);
-    Result<OpenedField> opened = openFor(options);
-    if (!opened) return fail(opened.error());
-    const FieldData* const data = &opened->data;
-    if (!data->sceneName.empty() && data->sceneName != scene->name)
-        note(context, fmt::format("Note: the light field was baked from scene '{}', this is '{}'.", data->sceneName, scene->name));
-
-    auto lighting = chooseLight(options, *data, *groups, *scene);
-    if (!lighting) return fail(lighting.error());
-    capScene(*scene, *plan); // after the groups have found their lights
-
-    // A field doesn't keep light apart by its source: what was baked of an effect can't be taken out of it here.
-    for (const PlannedEffect& effect : plan->effects)
-        if (effect.ofScene && !effect.givenUp.empty() && std::ranges::find(data->effects, effect.name) != data->effects.end())
-            note(context, fmt::format("Note: the light field was baked with {}, and what it holds of that stays in indirect light; bake "
-                                      "with the same --effects.",
-                                      effect.name));
-
-    std::string diffuse;
-    Result<RenderSettings> chosen = settingsFor(options, *plan, *data, options.field, diffuse);
-    if (!chosen) return fail(chosen.error());
-    RenderSettings settings = std::move(*chosen);
-    settings.layers = wantsLayersOfLight(options.pictures.aov);
-    settings.width = options.width;
-    settings.height = options.height;
-    if (!options.drawnOnly) settings.shapes = *shapes;
-    addShapes(*scene, *shapes); // after the plan: they call for nothing
-
-    // After everything that can be refused without a device, which takes longer to start than all of that together.
-    const Result<OwnDevice> device = OwnDevice::create({.device = options.device});
-    if (!device) return fail(device.error());
-    Result<std::shared_ptr<Gpu>> gpu = Gpu::create(device->host());
-    if (!gpu) return fail(gpu.error());
-    Result<LightField> field = opened->maps ? makeStreamedField(**gpu, *data, std::move(*opened->maps), options.resident, tracer)
-                                            : makeLightField(**gpu, *data, tracer);
-    if (!field) return fail(field.error());
-    std::optional<FieldStream> stream;
-    if (options.resident > 0)
-    {
-        auto made = makeFieldStream(**gpu, *field, {});
-        if (!made) return fail(made.error());
-        stream = std::move(*made);
-    }
-    std::optional<double> groupsMs;
-    std::map<std::string, double> liveMs; // by pass
-    std::optional<LiveLight> live;
-    if (lighting->light.moves)
-    {
-        auto made = makeLiveLight(**gpu, *field, *data);
-        if (!made) return fail(made.error());
-        live = std::move(*made);
-        const auto settled = settle(**gpu, *live, {lighting->light.lights, lighting->light.weights});
-        if (!settled) return fail(settled.error());
-        liveMs = *settled;
-    }
-    else if (!lighting->light.weights.empty())
-    {
-        const Result<double> dimmed = dimField(**gpu, *field, *data, lighting->light.weights);
-        if (!dimmed) return fail(dimmed.error());
-        groupsMs = *dimmed;
-    }
-    if (fromField)
-    {
-        if (data->radiance.empty())
+        if (data.radiance.empty())
             note(context,
                  "Note: the light field was baked without the effects glossy and mirror; what is seen is as blurred as its prefiltered "
                  "radiance. Bake it with --effects all.");
-        return drawWithoutGeometry(options, **gpu, device->name(), *field, *fromField, context);
+        return drawWithoutGeometry(options, *on.gpu, on.device->name(), *on.field, *asked->fromField, context);
     }
-    if ((settings.effects.glossy || settings.effects.mirror) && !field->holdsRadiance())
+    RenderSettings& settings = asked->settings;
+    if ((settings.effects.glossy || settings.effects.mirror) && !on.field->holdsRadiance())
         note(context,
              "Note: the light field was baked without the effects glossy and mirror; reflections are as blurred as its prefiltered "
              "radiance. Bake it with --effects all.");
@@ -433,66 +537,21 @@ int runRender(RenderOptions options, const Context& context)
     if (const std::optional<Baseline> baseline = baselineNamed(options.tracer))
     {
         settings.lightShaders = lightPasses(*baseline);
-        settings.normalOffset += baselineOffset(*baseline) / (data->info.diagonal * data->info.scale);
+        settings.normalOffset += baselineOffset(*baseline) / (data.info.diagonal * data.info.scale);
     }
-    if (!lighting->path.empty()) return drawDay(options, **gpu, *scene, *field, *live, *lighting, settings, *camera, *plan, context);
-    const Result<Drawn> drawn =
-        drawFrames(**gpu, *scene, *field, settings, *camera, options.frames, options.warmUp, stream ? &*stream : nullptr, context);
+    if (!asked->lighting.path.empty())
+        return drawDay(options, *on.gpu, asked->scene, *on.field, *on.live, asked->lighting, settings, asked->camera, asked->plan, context);
+    const Result<Drawn> drawn = drawFrames(*on.gpu, asked->scene, *on.field, settings, asked->camera, options.frames, options.warmUp,
+                                           on.stream ? &*on.stream : nullptr, context);
     if (!drawn) return fail(drawn.error());
-
-    // All that the picture depends on, so that it can be drawn again from what stands beside it.
-    Json json;
-    json["device"] = device->name();
-    json["tracer"] = options.tracer;
-    json["effects"] = Json::object();
-    for (const PlannedEffect& effect : plan->effects) json["effects"][effect.name] = effect.on;
-    json["effects"]["denoise"] = settings.effects.denoise;
-    json["given_up"] = Json::object();
-    for (const PlannedEffect& effect : plan->effects)
-        if (!effect.givenUp.empty()) json["given_up"][effect.name] = effect.givenUp;
-    json["device_bytes"] = drawn->deviceBytes;
-    json["samples"] = settings.glossyRays;
-    json["trace_every"] = settings.traceEvery;
-    json["surface_probes"] = settings.surfaceProbes;
-    json["rays_below"] = settings.raysBelow;
-    json["diffuse"] = diffuse;
-    json["area_shadows"] = options.areaShadows;
-    json["temporal"] = settings.effects.temporal;
-    json["frames"] = options.frames;
-    json["dim"] = options.dims;
-    json["shapes"] = options.shapes.file;
-    json["drawn_only"] = options.drawnOnly;
-    if (groupsMs) json["light_groups_ms"] = *groupsMs;
-    if (live)
-    {
-        json["live_light_ms"] = liveMs;
-        json["live_device_bytes"] = live->deviceBytes();
-    }
-    if (drawn->streamed)
-        json["stream"] = {{"resident", drawn->streamed->resident},
-                          {"missing", drawn->streamed->missing},
-                          {"read", drawn->streamed->read},
-                          {"full", drawn->streamed->full},
-                          {"field_device_bytes", field->deviceBytes()}};
-    json["frame_ms"] = drawn->frameMs.empty() ? Json(nullptr) : Json(median(drawn->frameMs));
-    json["passes_ms"] = Json::object();
-    for (const std::string& pass : drawn->passes) json["passes_ms"][pass] = median(drawn->passMs.at(pass));
-    // Only the rays of reflections are counted, where layers tell what they cost; frames without have no means to give.
-    if (settings.layers && (settings.effects.glossy || settings.effects.mirror)) addCounts(json, drawn->frame, settings.glossyRays);
-    addDiffuseFrom(json, drawn->frame);
-    json["clamped_pixels"] = drawn->frame.clamped;
+    Json json = reportOf(options, *asked, on, *drawn);
     if (Status status = options.pictures.write(imagesOf(drawn->frame), json); !status) return fail(status.error());
     // After the pictures are written, so that the cost has that in it.
     addCost(json, watch);
     if (context.json)
         print(json);
     else
-    {
-        std::cout << options.pictures.output << ": " << options.width << "x" << options.height << " on " << device->name() << ", frame "
-                  << (drawn->frameMs.empty() ? std::string("not timed") : fmt::format("{:f} ms", median(drawn->frameMs))) << "\n";
-        for (const std::string& pass : drawn->passes) std::cout << "  " << pass << ": " << median(drawn->passMs.at(pass)) << " ms\n";
-        std::cout << std::flush;
-    }
+        sayTimes(options, on, *drawn);
     return exitOk;
 }
 

@@ -12,6 +12,7 @@
     bench/pages/bounces_table.sh                                bench/results/bounces.json
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
     bench/pages/paths_table.sh                                  bench/results/field_paths.json
+    bench/pages/day_sheet.sh                                    bench/results/day.json
     bench/pages/stream_table.sh                                 bench/results/streaming.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
     python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote; notes may follow
@@ -545,6 +546,15 @@ def field_paths(arguments):
            "trace_s: of our rays on the device; s: with what the host does between them; theirs: Embree's path tracer on the same cores, with draws of emitters, which ours has none of; frame: the default's, of the field of all bounces"], rows)
 
 
+def day(arguments):
+    """Of the lines that day_sheet.sh prints, and over them least and most."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    own = list(rows.values())
+    rows["all"] = {"label": "least and most", "hours": str(len(own))} | {key: least_and_most([row[key] for row in own]) for key in own[0] if key != "label"}
+    write("day.json", "A day in Sponza: one field with live links, its sky a group, under six suns and skies, against the path tracer", ["bench/pages/day_sheet.sh"],
+          ["320x180, 256 paths a pixel of up to 16 bounces, pixels in which both see the same surface; mean: over the reference's"], rows)
+
+
 def least_and_most(texts):
     numbers = sorted((float(text), text) for text in texts if text != "nan")
     return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
@@ -552,7 +562,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "fly": fly, "flights": flights}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "day": day, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -241,6 +241,10 @@ struct Bake
         return Error{ErrorCode::cancelled, fmt::format("The bake was stopped at {}, {} of {}", stage, done, count)};
     }
 
+    /// The field's space, its probes and what it will hold: before all else, for probes, scene and octree are on the device in its units.
+    Status describe(const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings, BakeReport& spent);
+    void takeRoom(bool emitters);
+    Status finish(const BakeSettings& settings);
     bool does(BakeStage stage, size_t probe) const { return !shard || (shard->stage == stage && shard->has(probe)); }
     bool takeMaps(size_t probe);
     Status bakeMaps(ProbeBaker& baker, size_t probe);
@@ -474,11 +478,84 @@ Status Bake::lentLight(Gpu& gpu, ProbeBaker& baker, const FieldData& light, Bake
     return success();
 }
 
+Status Bake::describe(const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings, BakeReport& spent)
+{
+    const auto refused = [](const std::string& fault) { return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)}; };
+    if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return refused(fault);
+    if (scene.triangles.empty())
+        return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
+    gpu::LightFieldInfo& info = field.info;
+    info = fieldSpace(scene.bounds());
+    info.sky = scene.sky;
+    info.probeCount = uint32_t(probes.size());
+    setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
+    info.surfaceSize = settings.light ? 0 : surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
+    info.surfaceDirections = info.surfaceSize > 0 && hasNormalTextures(scene) ? 1 : 0;
+    if (const std::string fault = surfaceFault(info, scene, settings); !fault.empty()) return refused(fault);
+    if (settings.grid)
+    {
+        info.gridX = uint32_t(settings.grid->count.x);
+        info.gridY = uint32_t(settings.grid->count.y);
+        info.gridZ = uint32_t(settings.grid->count.z);
+        info.gridOrigin = (settings.grid->origin - info.origin) / info.scale;
+        info.gridStep = settings.grid->step / info.scale;
+    }
+    field.resolution = settings.resolution;
+    field.sceneName = scene.name;
+    field.effects = settings.effects;
+    field.probes.resize(probes.size());
+    // A grid is looked up by its formula: its probes stay.
+    // Others stand two near planes off: what is nearer than that plane isn't drawn, and its corners are 1.73 times as far away as its
+    // middle.
+    const ClearedProbes cleared = clearedOfSurfaces(scene, probes, settings.grid ? 0.0f : 2.0f * kProbeNear * info.diagonal * info.scale);
+    spent.moved = cleared.moved;
+    spent.tight = cleared.tight;
+    for (size_t i = 0; i < probes.size(); ++i) field.probes[i].centre = (cleared.positions[i] - info.origin) / info.scale;
+    if (settings.light)
+        if (const std::string fault = lentFault(*settings.light, info, field.probes); !fault.empty()) return refused(fault);
+    return success();
+}
+
+void Bake::takeRoom(bool emitters)
+{
+    const gpu::LightFieldInfo& info = field.info;
+    const size_t count = field.probes.size(), light = count * radianceWordsPerProbe(info.chart, info.faceSize);
+    field.distance.resize(count * info.wordsPerProbe);
+    field.radiance.resize(light);
+    surfaces.resize(light);
+    if (emitters) emitted.resize(light);
+    field.irradiance.resize(count * kIrradianceWordsPerProbe);
+    texels.resize(size_t(6) * info.surfaceSize * info.surfaceSize * count);
+    if (!octahedral()) return;
+    // Octree and summaries are made from cube faces, of which an octahedral field keeps none.
+    cube.info = info;
+    setChart(cube.info, gpu::kChartCube, info.faceSize / 2);
+    cube.probes = field.probes;
+    cube.distance.resize(count * cube.info.wordsPerProbe);
+}
+
 void dropSurfaceLight(FieldData& field)
 {
     field.surfaceLight = {};
     field.info.surfaceSize = field.info.surfaceDirections = field.info.refinedTexels = field.info.hidden = 0;
     field.info.cellShift = 0;
+}
+
+/// What is made from the light of the last bounce; only then may the radiance go that it is made from.
+Status Bake::finish(const BakeSettings& settings)
+{
+    if (field.info.surfaceSize == 0) makePatches(field, surfaces, emitted);
+    if (settings.prefiltered) prefilterRadiance(field);
+    if (!settings.radiance) field.radiance = {};
+    if (settings.compact)
+    {
+        // Not asked for any more, and more than blocks take: what was counted to fit is enough.
+        for (std::vector<uint32_t>* words : {&surfaces, &direct, &emitted}) std::vector<uint32_t>().swap(*words);
+        if (auto status = putInBlocks(field); !status) return status;
+    }
+    // Where no frame reads it, it was made for what surfaces send to mirrors alone.
+    if (!settings.readsSurfaces && !settings.layout && field.lamps.empty()) dropSurfaceLight(field);
+    return success();
 }
 
 } // namespace
@@ -510,51 +587,17 @@ namespace
 Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                           const BakeShard* shard, const Progress& progress, BakeReport& bakeReport)
 {
-    if (const std::string fault = argumentFault(probes, settings); !fault.empty())
-        return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
-    if (scene.triangles.empty())
-        return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
-    // The field's space before all else: probes, scene and octree are on the device in its units.
     Bake bake{{}, {}, {}, {}, {}, {}, progress, {}, shard};
     BakeReport spent;
     Stopwatch watch;
+    if (auto status = bake.describe(scene, probes, settings, spent); !status) return status.error();
     gpu::LightFieldInfo& info = bake.field.info;
-    info = fieldSpace(scene.bounds());
-    info.sky = scene.sky;
-    info.probeCount = uint32_t(probes.size());
-    setChart(info, settings.chart, chartSize(settings.chart, settings.resolution));
-    info.surfaceSize = settings.light ? 0 : surfaceSizeOf(info.chart, info.faceSize, settings.surfaceTexels);
     const bool surfaceLight = info.surfaceSize > 0 || settings.light;
-    info.surfaceDirections = info.surfaceSize > 0 && hasNormalTextures(scene) ? 1 : 0;
-    if (const std::string fault = surfaceFault(info, scene, settings); !fault.empty())
-        return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
-    if (settings.grid)
-    {
-        info.gridX = uint32_t(settings.grid->count.x);
-        info.gridY = uint32_t(settings.grid->count.y);
-        info.gridZ = uint32_t(settings.grid->count.z);
-        info.gridOrigin = (settings.grid->origin - info.origin) / info.scale;
-        info.gridStep = settings.grid->step / info.scale;
-    }
-    bake.field.resolution = settings.resolution;
-    bake.field.sceneName = scene.name;
-    bake.field.effects = settings.effects;
-    bake.field.probes.resize(probes.size());
-    // A grid is looked up by its formula: its probes stay.
-    // Others stand two near planes off: what is nearer than that plane isn't drawn, and its corners are 1.73 times as far away as its
-    // middle.
-    const ClearedProbes cleared = clearedOfSurfaces(scene, probes, settings.grid ? 0.0f : 2.0f * kProbeNear * info.diagonal * info.scale);
     const auto finished = [&](const BakeReport& done)
     {
         bakeReport = done;
         return Result<FieldData>(std::move(bake.field));
     };
-    spent.moved = cleared.moved;
-    spent.tight = cleared.tight;
-    for (size_t i = 0; i < probes.size(); ++i) bake.field.probes[i].centre = (cleared.positions[i] - info.origin) / info.scale;
-    if (settings.light)
-        if (const std::string fault = lentFault(*settings.light, info, bake.field.probes); !fault.empty())
-            return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
 
     auto gpu = Gpu::create(host);
     if (!gpu) return gpu.error();
@@ -583,21 +626,7 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         const bool emitters = deviceScene->lights().shines;
         const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
         if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
-        const size_t texels = probes.size() * radianceWordsPerProbe(info.chart, info.faceSize);
-        bake.field.distance.resize(probes.size() * info.wordsPerProbe);
-        bake.field.radiance.resize(texels);
-        bake.surfaces.resize(texels);
-        if (emitters) bake.emitted.resize(texels);
-        bake.field.irradiance.resize(probes.size() * kIrradianceWordsPerProbe);
-        bake.texels.resize(size_t(6) * info.surfaceSize * info.surfaceSize * probes.size());
-        // Octree and summaries are made from cube faces, of which an octahedral field keeps none.
-        if (bake.octahedral())
-        {
-            bake.cube.info = info;
-            setChart(bake.cube.info, gpu::kChartCube, info.faceSize / 2);
-            bake.cube.probes = bake.field.probes;
-            bake.cube.distance.resize(probes.size() * bake.cube.info.wordsPerProbe);
-        }
+        bake.takeRoom(emitters);
         if (auto status = bake.directLight(**baker); !status) return status.error();
         spent.probeSeconds = watch.lap();
         if (shard && shard->stage == BakeStage::maps) return finished(spent);
@@ -614,18 +643,7 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         if (!bounced) return bounced.error();
         if (shard) return finished(spent);
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
-        // Made from the light of the last bounce; only then may the radiance go that they are made from.
-        if (info.surfaceSize == 0) makePatches(bake.field, bake.surfaces, bake.emitted);
-        if (settings.prefiltered) prefilterRadiance(bake.field);
-        if (!settings.radiance) bake.field.radiance = {};
-        if (settings.compact)
-        {
-            // Not asked for any more, and more than blocks take: what was counted to fit is enough.
-            for (std::vector<uint32_t>* words : {&bake.surfaces, &bake.direct, &bake.emitted}) std::vector<uint32_t>().swap(*words);
-            if (auto status = putInBlocks(bake.field); !status) return status.error();
-        }
-        // Where no frame reads it, it was made for what surfaces send to mirrors alone.
-        if (!settings.readsSurfaces && !settings.layout && bake.field.lamps.empty()) dropSurfaceLight(bake.field);
+        if (auto status = bake.finish(settings); !status) return status.error();
         spent.prefilterSeconds = watch.lap();
         spent.peakDeviceBytes = (*gpu)->memory().peak();
     }

@@ -86,40 +86,32 @@ Result<std::unique_ptr<MapPool>> makePool(Gpu& gpu, MapFile file, uint32_t slots
     return pool;
 }
 
-/// @param pool  of a field whose maps come later; null: the field has them
-Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& quality, WordAccess access, std::unique_ptr<MapPool> pool)
+/// Words of a field, and where they are bound.
+struct Part
 {
-    if (field.probes.empty()) return Error{ErrorCode::badArgument, "the light field has no probes; bake one with at least one probe"};
-    const auto state = std::make_shared<LightField::State>();
-    LightField::State& made = *state;
-    made.gpu = gpu.shared_from_this();
-    made.info = field.info;
-    made.effects = field.effects;
-    made.sceneName = field.sceneName;
-    made.headers = field.probes;
-    made.groupCount = uint32_t(field.groups.size());
-    struct Part
-    {
-        Buffer& buffer;
-        std::span<const uint32_t> words;
-        const char* what;
-        uint32_t binding;
-        size_t room = 0; // words that come later
-        VkFormat texel = VK_FORMAT_R32_UINT;
-        size_t size() const { return std::max(words.size(), room); }
-    };
-    const size_t distances = pool ? pool->slots * pool->file.distanceWords() : 0,
-                 radiances = pool ? pool->slots * pool->file.radianceWords() : 0;
-    const Part parts[] = {{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding, distances},
-                          {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding, radiances,
-                           inBlocks(field.info) ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT},
-                          {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
-                          {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding},
-                          {made.surface, field.surfaceLight, "surface light", gpu::kFieldSurfaceBinding}};
-    // All or none: one way of reading is compiled into each shader.
-    made.byTexels =
-        access == WordAccess::texelBuffers &&
-        std::ranges::all_of(parts, [&](const Part& part) { return part.size() <= gpu.properties.limits.maxTexelBufferElements; });
+    Buffer& buffer;
+    std::span<const uint32_t> words;
+    const char* what;
+    uint32_t binding;
+    size_t room = 0; // words that come later
+    VkFormat texel = VK_FORMAT_R32_UINT;
+    size_t size() const { return std::max(words.size(), room); }
+};
+
+std::array<Part, 5> partsOf(LightField::State& made, const FieldData& field, const MapPool* pool)
+{
+    const size_t distances = pool ? pool->slots * pool->file.distanceWords() : 0;
+    const size_t radiances = pool ? pool->slots * pool->file.radianceWords() : 0;
+    return {{{made.distance, field.distance, "probe distances", gpu::kFieldDistanceBinding, distances},
+             {made.radiance, field.radiance, "probe radiance", gpu::kFieldRadianceBinding, radiances,
+              inBlocks(field.info) ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT},
+             {made.irradiance, field.irradiance, "probe irradiance", gpu::kFieldIrradianceBinding},
+             {made.prefiltered, field.prefiltered, "prefiltered radiance", gpu::kFieldPrefilteredBinding},
+             {made.surface, field.surfaceLight, "surface light", gpu::kFieldSurfaceBinding}}};
+}
+
+Status uploadParts(Gpu& gpu, LightField::State& made, std::span<const Part> parts)
+{
     for (const Part& part : parts)
     {
         if (part.size() == 0) continue;
@@ -131,18 +123,27 @@ Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& qu
         part.buffer = std::move(*buffer);
         made.bytes += part.buffer.size();
     }
-    if (!field.lamps.empty())
-    {
-        std::vector<uint32_t> words(field.lamps.size() * sizeof(gpu::Lamp) / sizeof(uint32_t));
-        std::memcpy(words.data(), field.lamps.data(), field.lamps.size() * sizeof(gpu::Lamp));
-        words.insert(words.end(), field.lampMaps.begin(), field.lampMaps.end());
-        auto buffer = gpu.makeBufferWith<uint32_t>(words, 0, "lamps");
-        if (!buffer) return buffer.error();
-        made.lamps = std::move(*buffer);
-        made.lampCount = uint32_t(field.lamps.size());
-        made.bytes += made.lamps.size();
-    }
     made.radianceHeld = made.radiance.size() > 0;
+    return success();
+}
+
+Status uploadLamps(Gpu& gpu, LightField::State& made, const FieldData& field)
+{
+    if (field.lamps.empty()) return success();
+    std::vector<uint32_t> words(field.lamps.size() * sizeof(gpu::Lamp) / sizeof(uint32_t));
+    std::memcpy(words.data(), field.lamps.data(), field.lamps.size() * sizeof(gpu::Lamp));
+    words.insert(words.end(), field.lampMaps.begin(), field.lampMaps.end());
+    auto buffer = gpu.makeBufferWith<uint32_t>(words, 0, "lamps");
+    if (!buffer) return buffer.error();
+    made.lamps = std::move(*buffer);
+    made.lampCount = uint32_t(field.lamps.size());
+    made.bytes += made.lamps.size();
+    return success();
+}
+
+/// Probe headers, patches, octree, and the block that the shaders' constants are in.
+Status uploadIndex(Gpu& gpu, LightField::State& made, const FieldData& field)
+{
     auto probes = gpu.makeTexelBuffer<gpu::ProbeHeader>(field.probes, VK_FORMAT_R32G32B32A32_SFLOAT, "probe headers");
     if (!probes) return probes.error();
     made.probes = std::move(*probes);
@@ -162,8 +163,12 @@ Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& qu
     if (!octree) return octree.error();
     made.octree = std::move(*octree);
     made.bytes += made.probes.size() + made.patches.size() + made.block.size() + field.octree.bytes();
+    return success();
+}
 
-    // Every binding whatever the field holds, so that one layout, and with it one pipeline, fits all fields.
+/// Every binding whatever the field holds, so that one layout, and with it one pipeline, fits all fields.
+Status bindAll(Gpu& gpu, LightField::State& made, std::span<const Part> parts)
+{
     const DescriptorSet::Binding bindings[] = {{gpu::kFieldBlockBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                                                {gpu::kFieldProbesBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldOctreeBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
@@ -182,10 +187,34 @@ Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& qu
     made.set.write(gpu::kFieldPatchesBinding, made.patches);
     // What isn't there, or is read by address, is bound to something that is there.
     for (const Part& part : parts) made.set.write(part.binding, made.byTexels && part.buffer ? part.buffer : made.patches);
-    made.maps = std::move(pool);
-    if (made.maps) made.bytes += made.maps->slotOfProbe.size() + made.maps->asked.size();
     made.set.write(gpu::kFieldSlotsBinding, made.maps ? made.maps->slotOfProbe : made.patches);
     made.set.write(gpu::kFieldOctreeBinding, made.octree.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    return success();
+}
+
+/// @param pool  of a field whose maps come later; null: the field has them
+Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& quality, WordAccess access, std::unique_ptr<MapPool> pool)
+{
+    if (field.probes.empty()) return Error{ErrorCode::badArgument, "the light field has no probes; bake one with at least one probe"};
+    const auto state = std::make_shared<LightField::State>();
+    LightField::State& made = *state;
+    made.gpu = gpu.shared_from_this();
+    made.info = field.info;
+    made.effects = field.effects;
+    made.sceneName = field.sceneName;
+    made.headers = field.probes;
+    made.groupCount = uint32_t(field.groups.size());
+    const auto parts = partsOf(made, field, pool.get());
+    // All or none: one way of reading is compiled into each shader.
+    made.byTexels =
+        access == WordAccess::texelBuffers &&
+        std::ranges::all_of(parts, [&](const Part& part) { return part.size() <= gpu.properties.limits.maxTexelBufferElements; });
+    if (auto status = uploadParts(gpu, made, parts); !status) return status.error();
+    if (auto status = uploadLamps(gpu, made, field); !status) return status.error();
+    if (auto status = uploadIndex(gpu, made, field); !status) return status.error();
+    made.maps = std::move(pool);
+    if (made.maps) made.bytes += made.maps->slotOfProbe.size() + made.maps->asked.size();
+    if (auto status = bindAll(gpu, made, parts); !status) return status.error();
     // Last: the block that it fills holds the addresses of the buffers above.
     if (auto status = made.setQuality(quality); !status) return status.error();
     return LightField(state);

@@ -298,128 +298,208 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
     if (denoiser) denoiser.setInputs(inputs);
 }
 
-void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
+/// A frame on its way into a command buffer: its passes, in their order, with what stands between them.
+class IndirectLight::State::Recording
 {
-    assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
-    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    // Write after read and after write: view, lists, counts and images are the same ones each frame. The frame before may still read its
-    // outputs in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for. Once for all that a frame
-    // writes anew.
-    memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, transfer | compute,
-                  VK_ACCESS_2_MEMORY_WRITE_BIT);
-    // Recorded, not written by the host: the frame before may still run with its own view.
-    gpu->vk.CmdUpdateBuffer(cmd, frame.handle(), 0, sizeof(view), &view);
-    if (tileList) tileList->clear(cmd);
-    if (moving) gpu->vk.CmdUpdateBuffer(cmd, moving.handle(), 0, shapeBytes.size(), shapeBytes.data());
-    // Traces write where rays start; the other pixels must not keep the counts of the frame before.
-    if (countImage)
-    {
-        const VkClearColorValue nothing{.uint32 = {gpu::kNoProbe, 0, 0, 0}};
-        const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        gpu->vk.CmdClearColorImage(cmd, countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
-    }
-    // Every pass reads the view; classification counts up by atomics from the cleared lists; traces write over the cleared counts.
-    memoryBarrier(*gpu, cmd, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
-                  VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-    const auto timed = [&](const char* name, auto&& work)
+public:
+    Recording(State& of, VkCommandBuffer into, GpuTimer* by) : state(of), cmd(into), timer(by) {}
+
+    void begin(const gpu::FrameView& view);
+    void classify();
+    void moveShapes(); // the light of what moves
+    void lookUps();
+    void traces();
+    void fills();
+    void filter();
+    void overShapes(); // what they hide
+    void lamps();
+    void end();
+
+private:
+    static constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    static constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    static constexpr VkAccessFlags2 kRead = VK_ACCESS_2_SHADER_STORAGE_READ_BIT, kWrite = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+
+    /// What compute passes have stored, before others use it so.
+    void between(VkAccessFlags2 use) { memoryBarrier(*state.gpu, cmd, kCompute, kWrite, kCompute, use); }
+    template <class Work> void timed(const char* name, const Work& work)
     {
         if (timer) timer->begin(cmd, name);
         work();
         if (timer) timer->end(cmd);
-    };
-    const auto run = [&](const Pipeline& pipeline, const DescriptorSet& set, auto&& dispatch)
+    }
+    template <class Dispatch> void run(const Pipeline& pipeline, const DescriptorSet& set, const Dispatch& dispatch)
     {
-        const VkDescriptorSet sets[] = {field.descriptorSet(), set.handle()};
+        const VkDescriptorSet sets[] = {state.field.descriptorSet(), set.handle()};
         pipeline.bind(cmd, sets);
         dispatch();
-    };
-    const auto pass = [&](const Pipeline& pipeline, const DescriptorSet& set, const char* name, auto&& dispatch)
+    }
+    template <class Dispatch> void pass(const Pipeline& pipeline, const DescriptorSet& set, const char* name, const Dispatch& dispatch)
     {
         if (pipeline) timed(name, [&] { run(pipeline, set, dispatch); });
-    };
-    const auto onTiles = [&](uint32_t term, uint32_t tilesLog = 0) { return [=, this] { tileList->dispatch(cmd, term, tilesLog); }; };
-    const auto byLookUps = [&](uint32_t list) { return [=, this] { tileList->dispatchLookUps(cmd, list); }; };
-    const auto scan = [&](const char* name, std::initializer_list<const GpuImage*> images)
+    }
+    auto onTiles(uint32_t term, uint32_t tilesLog = 0)
+    {
+        return [=, this] { state.tileList->dispatch(cmd, term, tilesLog); };
+    }
+    auto byLookUps(uint32_t list)
+    {
+        return [=, this] { state.tileList->dispatchLookUps(cmd, list); };
+    }
+    void inTwo(const Pipeline& first, const Pipeline& rest, const DescriptorSet& set, uint32_t left);
+    void scan(const char* name, std::initializer_list<const GpuImage*> images)
     {
         for (const GpuImage* image : images)
-            if (*image) scanImage(*gpu, cmd, name, *image);
-    };
-    // Ahead of all passes, which run by its lists.
-    if (tileList) timed("classify tiles", [&] { tileList->record(cmd); });
-    const auto* shapes = moving ? reinterpret_cast<const gpu::MovingShapesHead*>(shapeBytes.data()) : nullptr;
-    if (movingFacings && shapes->count > 0)
-    {
-        run(movingFacings, movingFacingsSet, [&] { gpu->vk.CmdDispatch(cmd, (shapes->count * gpu::kShapeFacings + 63) / 64, 1, 1); });
-        // Read after write: rays and the passes over shapes read their light.
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+            if (*image) scanImage(*state.gpu, cmd, name, *image);
     }
-    const auto inTwo = [&](const Pipeline& first, const Pipeline& rest, const DescriptorSet& set, uint32_t left)
+    uint32_t shapes() const // that move
     {
-        for (const Pipeline* half : {&first, &rest})
-        {
-            run(*half, set, byLookUps(half == &rest ? left : 0));
-            // The first adds to the list that the second runs by, and both may write to the lists that all later passes run by, as far as a
-            // driver can tell. The light at surfaces is read by the gathering pass, which scales rough reflections by it.
-            memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
-                              VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
-        }
-    };
-    if (surfacePass) timed("surface light", [&] { inTwo(surfacePass, surfaceRestPass, surfaceSet, 1); });
-    scan("surface light", {&diffuseImage});
-    pass(gatherPass, gatherSet, "gather light", byLookUps(gatherLookUps()));
-    scan("gather light", {&diffuseImage, &roughImage});
-    pass(diffusePass, diffuseSet, "diffuse trace", onTiles(gpu::kTermDiffuse, everyLog()));
-    scan("diffuse trace", {&diffuseImage});
-    pass(glossyPass, glossySet, "glossy trace", onTiles(gpu::kTermGlossy, everyLog()));
-    scan("glossy trace", {&glossyImage});
-    // Write after write: both traces store counts into one image. Passes before them share no image, so that nothing stands between those.
-    if (countImage && glossyPass && mirrorPass) // each writes its own pixels of it
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-    pass(mirrorPass, mirrorSet, "mirror trace", onTiles(gpu::kTermMirror));
-    scan("mirror trace", {&mirrored()});
-    if (glossyFill || diffuseFill)
-    {
-        // Read after write: a fill takes light from the traced pixels about its own, and stores into the same image. One barrier for both
-        // fills: each has an image of its own.
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-        pass(diffuseFill, diffuseFillSet, "diffuse fill", onTiles(gpu::kTermDiffuse));
-        scan("diffuse fill", {&diffuseImage});
-        pass(glossyFill, glossyFillSet, "glossy fill", onTiles(gpu::kTermGlossy));
-        scan("glossy fill", {&glossyImage});
+        return state.moving ? reinterpret_cast<const gpu::MovingShapesHead*>(state.shapeBytes.data())->count : 0;
     }
-    // After the fill: where the trace is sparse, most pixels have no light before it that a filter could take.
-    if (denoiser) timed("glossy denoise", [&] { denoiser.record(cmd, field.descriptorSet()); });
-    scan("glossy denoise", {&glossyImage, &scratch});
-    if ((movingDiffuse[0] || movingRough[0]) && shapes->count > 0)
+
+    State& state;
+    VkCommandBuffer cmd;
+    GpuTimer* timer;
+};
+
+void IndirectLight::State::Recording::begin(const gpu::FrameView& view)
+{
+    const Gpu& gpu = *state.gpu;
+    // Write after read and after write: view, lists, counts and images are the same ones each frame. The frame before may still read its
+    // outputs in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for. Once for all that a frame
+    // writes anew.
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, kTransfer | kCompute,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT);
+    // Recorded, not written by the host: the frame before may still run with its own view.
+    gpu.vk.CmdUpdateBuffer(cmd, state.frame.handle(), 0, sizeof(view), &view);
+    if (state.tileList) state.tileList->clear(cmd);
+    if (state.moving) gpu.vk.CmdUpdateBuffer(cmd, state.moving.handle(), 0, state.shapeBytes.size(), state.shapeBytes.data());
+    // Traces write where rays start; the other pixels must not keep the counts of the frame before.
+    if (state.countImage)
     {
-        timed("moving shapes",
-              [&]
+        const VkClearColorValue nothing{.uint32 = {gpu::kNoProbe, 0, 0, 0}};
+        const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        gpu.vk.CmdClearColorImage(cmd, state.countImage.handle(), VK_IMAGE_LAYOUT_GENERAL, &nothing, 1, &all);
+    }
+    // Every pass reads the view; classification counts up by atomics from the cleared lists; traces write over the cleared counts.
+    memoryBarrier(gpu, cmd, kTransfer, VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute, VK_ACCESS_2_UNIFORM_READ_BIT | kRead | kWrite);
+}
+
+/// Ahead of all passes, which run by its lists.
+void IndirectLight::State::Recording::classify()
+{
+    if (state.tileList) timed("classify tiles", [&] { state.tileList->record(cmd); });
+}
+
+void IndirectLight::State::Recording::moveShapes()
+{
+    if (!state.movingFacings || shapes() == 0) return;
+    run(state.movingFacings, state.movingFacingsSet,
+        [&] { state.gpu->vk.CmdDispatch(cmd, (shapes() * gpu::kShapeFacings + 63) / 64, 1, 1); });
+    between(kRead); // rays and the passes over shapes read their light
+}
+
+/// A pass by two lists of look-ups: what the first leaves, the rest does.
+void IndirectLight::State::Recording::inTwo(const Pipeline& first, const Pipeline& rest, const DescriptorSet& set, uint32_t left)
+{
+    for (const Pipeline* half : {&first, &rest})
+    {
+        run(*half, set, byLookUps(half == &rest ? left : 0));
+        // The first adds to the list that the second runs by, and both may write to the lists that all later passes run by, as far as a
+        // driver can tell. The light at surfaces is read by the gathering pass, which scales rough reflections by it.
+        memoryBarrier(*state.gpu, cmd, kCompute, kWrite, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                      kRead | kWrite | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+    }
+}
+
+void IndirectLight::State::Recording::lookUps()
+{
+    if (state.surfacePass) timed("surface light", [&] { inTwo(state.surfacePass, state.surfaceRestPass, state.surfaceSet, 1); });
+    scan("surface light", {&state.diffuseImage});
+    pass(state.gatherPass, state.gatherSet, "gather light", byLookUps(state.gatherLookUps()));
+    scan("gather light", {&state.diffuseImage, &state.roughImage});
+}
+
+void IndirectLight::State::Recording::traces()
+{
+    pass(state.diffusePass, state.diffuseSet, "diffuse trace", onTiles(gpu::kTermDiffuse, state.everyLog()));
+    scan("diffuse trace", {&state.diffuseImage});
+    pass(state.glossyPass, state.glossySet, "glossy trace", onTiles(gpu::kTermGlossy, state.everyLog()));
+    scan("glossy trace", {&state.glossyImage});
+    // Write after write: both traces store counts into one image, each its own pixels of it. Passes before them share no image, so that
+    // nothing stands between those.
+    if (state.countImage && state.glossyPass && state.mirrorPass) between(kWrite);
+    pass(state.mirrorPass, state.mirrorSet, "mirror trace", onTiles(gpu::kTermMirror));
+    scan("mirror trace", {&state.mirrored()});
+}
+
+void IndirectLight::State::Recording::fills()
+{
+    if (!state.glossyFill && !state.diffuseFill) return;
+    // Read after write: a fill takes light from the traced pixels about its own, and stores into the same image. One barrier for both
+    // fills: each has an image of its own.
+    between(kRead | kWrite);
+    pass(state.diffuseFill, state.diffuseFillSet, "diffuse fill", onTiles(gpu::kTermDiffuse));
+    scan("diffuse fill", {&state.diffuseImage});
+    pass(state.glossyFill, state.glossyFillSet, "glossy fill", onTiles(gpu::kTermGlossy));
+    scan("glossy fill", {&state.glossyImage});
+}
+
+/// After the fills: where the trace is sparse, most pixels have no light before them that a filter could take.
+void IndirectLight::State::Recording::filter()
+{
+    if (state.denoiser) timed("glossy denoise", [&] { state.denoiser.record(cmd, state.field.descriptorSet()); });
+    scan("glossy denoise", {&state.glossyImage, &state.scratch});
+}
+
+void IndirectLight::State::Recording::overShapes()
+{
+    if ((!state.movingDiffuse[0] && !state.movingRough[0]) || shapes() == 0) return;
+    timed("moving shapes",
+          [&]
+          {
+              for (const size_t boxes : {0, 1})
               {
-                  for (const size_t boxes : {0, 1})
-                  {
-                      if (!kindsMove[boxes]) continue;
-                      // Read after write: what is looked up has been stored by then, and so has what shapes of the other kind left of it.
-                      memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-                      if (movingDiffuse[boxes]) run(movingDiffuse[boxes], movingDiffuseSet, onTiles(gpu::kTermDiffuse));
-                      if (movingRough[boxes]) run(movingRough[boxes], movingRoughSet, onTiles(gpu::kTermRough)); // another image
-                  }
-              });
-        scan("moving shapes", {&diffuseImage, &roughImage});
-    }
-    if (lampPass)
-    {
-        // Read after write: the light of lamps is added to what the passes and filters before have stored.
-        memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
-        timed("lamp light", [&] { inTwo(lampPass, lampRestPass, lampSet, lampLookUps); });
-        scan("lamp light", {&diffuseImage, &roughImage, &glossyImage, &mirrorImage});
-    }
-    // Who reads the outputs is the host's choice, so all commands; nothing later in the frame may write them without a barrier of its own.
-    memoryBarrier(*gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                  VK_ACCESS_2_MEMORY_READ_BIT);
+                  if (!state.kindsMove[boxes]) continue;
+                  // Read after write: what is looked up has been stored by then, and so has what shapes of the other kind left of it.
+                  between(kRead | kWrite);
+                  if (state.movingDiffuse[boxes]) run(state.movingDiffuse[boxes], state.movingDiffuseSet, onTiles(gpu::kTermDiffuse));
+                  if (state.movingRough[boxes])
+                      run(state.movingRough[boxes], state.movingRoughSet, onTiles(gpu::kTermRough)); // another image
+              }
+          });
+    scan("moving shapes", {&state.diffuseImage, &state.roughImage});
+}
+
+void IndirectLight::State::Recording::lamps()
+{
+    if (!state.lampPass) return;
+    // Read after write: the light of lamps is added to what the passes and filters before have stored.
+    between(kRead | kWrite);
+    timed("lamp light", [&] { inTwo(state.lampPass, state.lampRestPass, state.lampSet, state.lampLookUps); });
+    scan("lamp light", {&state.diffuseImage, &state.roughImage, &state.glossyImage, &state.mirrorImage});
+}
+
+/// Who reads the outputs is the host's choice, so all commands; nothing later in the frame may write them without a barrier of its own.
+void IndirectLight::State::Recording::end()
+{
+    memoryBarrier(*state.gpu, cmd, kCompute, kWrite, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
+}
+
+void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
+{
+    assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
+    Recording recording(*this, cmd, timer);
+    recording.begin(view);
+    recording.classify();
+    recording.moveShapes();
+    recording.lookUps();
+    recording.traces();
+    recording.fills();
+    recording.filter();
+    recording.overShapes();
+    recording.lamps();
+    recording.end();
 }
 
 uint64_t IndirectLight::State::deviceBytes() const

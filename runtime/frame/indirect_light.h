@@ -55,6 +55,7 @@ struct IndirectLight::State
     bool readsSurfaces() const { return readsSurfaceLight(desc.effects, field.info()); }
 
 private:
+    class Recording;
     Status makeImage(GpuImage& target, VkFormat format, const char* what);
     struct Bound
     {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
+#include <span>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -112,6 +114,74 @@ VkSamplerCreateInfo samplerInfo(VkFilter filter, VkSamplerAddressMode wrap)
     return info;
 }
 
+/// The shadow maps of lights of a kind.
+struct MapKind
+{
+    GpuImage& maps;
+    uint32_t size, layers, binding;
+    VkFormat format;
+    const Sampler& sampler;
+    const char* what;
+};
+
+/// New images: nothing used them. Each layer is cleared where it is drawn.
+void toAttachment(Gpu& gpu, VkCommandBuffer cmd, const GpuImage& maps)
+{
+    transition(gpu, cmd, maps,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
+                VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
+                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
+}
+
+/// Read after write, for the draws of all submits before. All commands: who samples the scene's set first is not known here.
+void toSampled(Gpu& gpu, VkCommandBuffer cmd, const GpuImage& maps)
+{
+    transition(gpu, cmd, maps,
+               {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+}
+
+/// Draws every light's maps: suns', the sky's, points' and emitters' kind, in this order.
+Status drawMaps(Gpu& gpu, const LightList& lights, const SceneMesh& triangles, const DescriptorSet& set, std::span<const MapKind, 4> kinds,
+                const Progress& progress)
+{
+    // A pipeline names the format of the depth it draws to: one for each format in use.
+    constexpr VkFormat kFormats[] = {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM};
+    DepthPipelines pipelines[2];
+    for (size_t i = 0; i < std::size(kFormats); ++i)
+    {
+        if (std::ranges::none_of(kinds, [&](const MapKind& kind) { return kind.maps && kind.format == kFormats[i]; })) continue;
+        auto made = DepthPipelines::create(gpu, set.layout(), kFormats[i], triangles.hasMasked());
+        if (!made) return made.error();
+        pipelines[i] = std::move(*made);
+    }
+    // A submit for each light rather than one for all, so that a bake can tell how far it is and be stopped.
+    SceneDraws draws;
+    for (size_t i = 0; i < lights.lights.size(); ++i)
+    {
+        if (!report(progress, "shadow maps", double(i) / double(lights.lights.size())))
+            return Error{ErrorCode::cancelled, "The bake was stopped while rendering shadow maps"};
+        const gpu::GpuLight& light = lights.lights[i];
+        // Samples that rays shadow have no map to draw.
+        if (light.shadowLayer == kNoShadowMap) continue;
+        const MapKind& kind = kinds[light.type == gpu::kLightDirectional ? 0
+                                    : light.type == gpu::kLightSky       ? 1
+                                    : light.type == gpu::kLightEmitter   ? 3
+                                                                         : 2];
+        const DepthPipelines& pipeline = pipelines[kind.format == kFormats[0] ? 0 : 1];
+        const std::vector<gpu::SceneView> views = shadowViews(light, lights.header.pointNear);
+        auto status = gpu.submit(
+            [&](VkCommandBuffer cmd)
+            {
+                for (uint32_t v = 0; v < views.size(); ++v)
+                    renderDepth(gpu, cmd, pipeline, triangles, set.handle(), kind.maps, uint32_t(light.shadowLayer) + v, views[v], draws);
+            });
+        if (!status) return status;
+    }
+    return success();
+}
+
 } // namespace
 
 DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field)
@@ -203,108 +273,49 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
 Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
 {
     const LightSettings& sizes = lightList.settings;
-    struct Kind
-    {
-        GpuImage& maps;
-        uint32_t size, layers, binding;
-        VkFormat format;
-        const Sampler& sampler;
-        const char* what;
-    };
     // 16 bits for the sky: it has the most maps by far, and their step of 1.5e-5 is below the bias of 5e-5 by which they are looked up.
-    const Kind kinds[] = {{sunMaps, sizes.sunShadow, lightList.sunLayers, gpu::kSunShadowsBinding, VK_FORMAT_D32_SFLOAT, smoothCompare,
-                           "The suns' shadow maps"},
-                          {skyMaps, sizes.skyShadow, lightList.skyLayers, gpu::kSkyShadowsBinding, VK_FORMAT_D16_UNORM, nearestCompare,
-                           "The sky's shadow maps"},
-                          {pointMaps, sizes.pointShadow, lightList.pointLayers, gpu::kPointShadowsBinding, VK_FORMAT_D32_SFLOAT,
-                           smoothCompare, "The point lights' shadow maps"},
-                          {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, gpu::kEmitterShadowsBinding, VK_FORMAT_D32_SFLOAT,
-                           nearestCompare, "The emitters' shadow maps"}};
-    const auto toAttachment = [&](VkCommandBuffer cmd, const GpuImage& maps)
-    {
-        // New images: nothing used them. Each layer is cleared where it is drawn.
-        transition(gpu, cmd, maps,
-                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
-                    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
-                    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
-    };
-    const auto toSampled = [&](VkCommandBuffer cmd, const GpuImage& maps)
-    {
-        // Read after write, for the draws of all submits before. All commands: who samples the scene's set first is not known here.
-        transition(gpu, cmd, maps,
-                   {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
-    };
-    const bool none = std::ranges::all_of(kinds, [](const Kind& kind) { return kind.layers == 0; });
-    if (none) // the bindings of kinds that a scene lacks are another kind's maps, which nothing reads; these where all lack
-    {
-        auto maps = depthArray(gpu, 1, 1, VK_FORMAT_D16_UNORM, "The stand-in for shadow maps");
-        if (!maps) return maps.error();
-        noMaps = std::move(*maps);
-    }
-    const GpuImage* any = &noMaps;
-    bool formats[2] = {}; // 32 bits, 16 bits
-    for (const Kind& kind : kinds)
+    const MapKind kinds[] = {{sunMaps, sizes.sunShadow, lightList.sunLayers, gpu::kSunShadowsBinding, VK_FORMAT_D32_SFLOAT, smoothCompare,
+                              "The suns' shadow maps"},
+                             {skyMaps, sizes.skyShadow, lightList.skyLayers, gpu::kSkyShadowsBinding, VK_FORMAT_D16_UNORM, nearestCompare,
+                              "The sky's shadow maps"},
+                             {pointMaps, sizes.pointShadow, lightList.pointLayers, gpu::kPointShadowsBinding, VK_FORMAT_D32_SFLOAT,
+                              smoothCompare, "The point lights' shadow maps"},
+                             {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, gpu::kEmitterShadowsBinding, VK_FORMAT_D32_SFLOAT,
+                              nearestCompare, "The emitters' shadow maps"}};
+    for (const MapKind& kind : kinds)
     {
         if (kind.layers == 0) continue;
         auto maps = depthArray(gpu, kind.size, kind.layers, kind.format, kind.what);
         if (!maps) return maps.error();
         kind.maps = std::move(*maps);
-        any = &kind.maps;
-        formats[kind.format == VK_FORMAT_D32_SFLOAT ? 0 : 1] = true;
     }
-    for (const Kind& kind : kinds)
-        set.write(kind.binding, (kind.maps ? kind.maps : *any).view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kind.sampler.handle());
+    const auto some = std::ranges::find_if(kinds, [](const MapKind& kind) { return bool(kind.maps); });
+    if (some ==
+        std::end(kinds)) // the bindings of kinds that a scene lacks are another kind's maps, which nothing reads; these where all lack
+    {
+        auto maps = depthArray(gpu, 1, 1, VK_FORMAT_D16_UNORM, "The stand-in for shadow maps");
+        if (!maps) return maps.error();
+        noMaps = std::move(*maps);
+    }
+    const GpuImage& any = some == std::end(kinds) ? noMaps : some->maps;
+    for (const MapKind& kind : kinds)
+        set.write(kind.binding, (kind.maps ? kind.maps : any).view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kind.sampler.handle());
     const auto everyMap = [&](VkCommandBuffer cmd, const auto& to)
     {
-        for (const Kind& kind : kinds)
-            if (kind.maps) to(cmd, kind.maps);
-        if (noMaps) to(cmd, noMaps);
+        for (const MapKind& kind : kinds)
+            if (kind.maps) to(gpu, cmd, kind.maps);
+        if (noMaps) to(gpu, cmd, noMaps);
     };
     // All layers at once and before any draw: the draws are submits of their own, and a transition from undefined drops what an image
     // holds.
-    auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); });
-    if (!status) return status;
-    // A pipeline names the format of the depth it draws to: one for each format in use.
-    DepthPipelines pipelines[2];
-    for (int i = 0; i < 2; ++i)
-    {
-        if (!formats[i]) continue;
-        auto made = DepthPipelines::create(gpu, set.layout(), i == 0 ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_D16_UNORM, triangles.hasMasked());
-        if (!made) return made.error();
-        pipelines[i] = std::move(*made);
-    }
-    // A submit for each light rather than one for all, so that a bake can tell how far it is and be stopped.
-    SceneDraws draws;
-    for (size_t i = 0; i < lightList.lights.size(); ++i)
-    {
-        if (!report(progress, "shadow maps", double(i) / double(lightList.lights.size())))
-            return Error{ErrorCode::cancelled, "The bake was stopped while rendering shadow maps"};
-        const gpu::GpuLight& light = lightList.lights[i];
-        // Samples that rays shadow have no map to draw.
-        if (light.shadowLayer == kNoShadowMap) continue;
-        const Kind& kind = kinds[light.type == gpu::kLightDirectional ? 0
-                                 : light.type == gpu::kLightSky       ? 1
-                                 : light.type == gpu::kLightEmitter   ? 3
-                                                                      : 2];
-        const std::vector<gpu::SceneView> views = shadowViews(light, lightList.header.pointNear);
-        status = gpu.submit(
-            [&](VkCommandBuffer cmd)
-            {
-                for (uint32_t v = 0; v < views.size(); ++v)
-                    renderDepth(gpu, cmd, pipelines[kind.format == VK_FORMAT_D32_SFLOAT ? 0 : 1], triangles, set.handle(), kind.maps,
-                                uint32_t(light.shadowLayer) + v, views[v], draws);
-            });
-        if (!status) return status;
-    }
+    if (auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); }); !status) return status;
+    if (auto status = drawMaps(gpu, lightList, triangles, set, kinds, progress); !status) return status;
     return gpu.submit(
         [&](VkCommandBuffer cmd)
         {
             everyMap(cmd, toSampled);
-            for (const Kind& kind : kinds)
-                if (kind.maps && kind.layers > 0) scanImage(gpu, cmd, "shadow maps", kind.maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+            for (const MapKind& kind : kinds)
+                if (kind.maps) scanImage(gpu, cmd, "shadow maps", kind.maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         });
 }
 
