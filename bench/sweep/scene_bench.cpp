@@ -192,10 +192,10 @@ Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume vo
 }
 
 Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress,
-                                       uint32_t rays)
+                                       uint32_t raysOfProbe)
 {
     VolumeSettings wanted;
-    wanted.rays = rays;
+    wanted.rays = raysOfProbe;
     wanted.bias = settings.lookUpBias;
     wanted.bounces = settings.bounces;
     wanted.seed = desc.settings.seed;

@@ -339,11 +339,11 @@ Result<LightField> Bake::asItIs(Gpu& gpu)
 /// Every probe's radiance: its direct light and what its surfaces reflect of the field's.
 Status Bake::reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage)
 {
-    const size_t texels = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
+    const size_t words = radianceWordsPerProbe(field.info.chart, field.info.faceSize);
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
         if (auto status = cancelledIfAsked(stage, i, field.probes.size()); !status) return status;
-        const std::span<const uint32_t> own = std::span(direct).subspan(i * texels, texels);
+        const std::span<const uint32_t> own = std::span(direct).subspan(i * words, words);
         auto status = baker.bakeBounce(uint32_t(i), field.probes[i].centre, lit, own, target(i));
         if (!status) return status;
     }
@@ -395,20 +395,20 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     if (settings.rays)
         exact.emplace(counted.emplace(*settings.rays), field, texels, scene.lights(),
                       TriangleGather::Desc{settings.surfaceRays, shadowRays});
-    auto surfaces = SurfaceBaker::create(
+    auto gatherer = SurfaceBaker::create(
         gpu, scene, *dark, texels,
         {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live, parts});
-    if (!surfaces) return surfaces.error();
-    if (auto status = gather(*surfaces); !status) return status;
+    if (!gatherer) return gatherer.error();
+    if (auto status = gather(*gatherer); !status) return status;
     spent.gatherSeconds = watch.lap();
     if (shard) return success();
     // What surfaces send of direct light is in the probes' radiance already; so the light without a bounce adds only what it sends besides.
-    auto before = surfaces->meanSent();
+    auto before = gatherer->meanSent();
     for (uint32_t b = 0; before && b <= settings.bounces; ++b)
     {
         if (auto status = cancelledIfAsked(fmt::format("bounce {}", b), 0, 1); !status) return status;
-        if (auto status = surfaces->bounce(); !status) return status;
-        const auto sent = surfaces->meanSent();
+        if (auto status = gatherer->bounce(); !status) return status;
+        const auto sent = gatherer->meanSent();
         if (!sent) return sent.error();
         const double added = *sent - *before;
         before = sent;
@@ -423,18 +423,18 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
     }
     if (!before) return before.error();
     field.surfaceLight.resize(surfaceTexelWords(field.info) + cellWords(field.info));
-    if (auto status = surfaces->read(field.surfaceLight); !status) return status;
+    if (auto status = gatherer->read(field.surfaceLight); !status) return status;
     auto lit = asItIs(gpu);
     if (!lit) return lit.error();
     if (auto status = reflect(*lit, baker, "radiance"); !status) return status;
     // What arrives at a surface has been scattered once less than what it sends: once more, so that frames show as many bounces by either.
-    if (auto status = surfaces->bounce(); !status) return status;
-    if (auto status = surfaces->read(field.surfaceLight); !status) return status;
+    if (auto status = gatherer->bounce(); !status) return status;
+    if (auto status = gatherer->read(field.surfaceLight); !status) return status;
     if (auto status = cancelledIfAsked("refined texels", 0, 1); !status) return status;
-    if (auto status = surfaces->refine(field, settings.surfaceRefined, settings.layout); !status) return status;
+    if (auto status = gatherer->refine(field, settings.surfaceRefined, settings.layout); !status) return status;
     if (counted) spent.gatherRays = counted->count();
     if (!live) return success();
-    settings.layout->live = surfaces->transport(field, settings.layout->liveLinks, *settings.layout->hidden);
+    settings.layout->live = gatherer->transport(field, settings.layout->liveLinks, *settings.layout->hidden);
     settings.layout->live.albedo = coarserAlbedo();
     return success();
 }

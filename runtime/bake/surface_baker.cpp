@@ -315,23 +315,23 @@ Status SurfaceBaker::read(std::span<uint32_t> found)
     return success();
 }
 
-Status SurfaceBaker::refine(FieldData& lit, float share, LightLayout* layout)
+Status SurfaceBaker::refine(FieldData& data, float share, LightLayout* layout)
 {
     if (!desc.triangles) return success();
     std::vector<uint32_t> before(texels());
     if (auto status = gpu->download(sentBefore, 0, std::as_writable_bytes(std::span(before))); !status) return status;
-    lightHiddenSurfaces(lit, *desc.triangles, before, layout ? &layout->hidden : nullptr);
-    refineTexels(lit, *desc.triangles, before, share, layout ? &layout->refined : nullptr);
+    lightHiddenSurfaces(data, *desc.triangles, before, layout ? &layout->hidden : nullptr);
+    refineTexels(data, *desc.triangles, before, share, layout ? &layout->refined : nullptr);
     return success();
 }
 
-LiveTransport SurfaceBaker::transport(const FieldData& lit, uint32_t count, const HiddenPlaces& hidden) const
+LiveTransport SurfaceBaker::transport(const FieldData& data, uint32_t count, const HiddenPlaces& hidden) const
 {
     assert(desc.live && desc.triangles && count <= desc.rays && liveTexels.size() == texels());
     LiveTransport live;
     live.links = count;
     live.texels = liveTexels;
-    for (uint32_t probe = 0; probe < lit.info.probeCount; ++probe)
+    for (uint32_t probe = 0; probe < data.info.probeCount; ++probe)
     {
         const auto own = links.begin() + std::ptrdiff_t(probe * texelsOfProbe() * desc.rays);
         live.texelLinks.insert(live.texelLinks.end(), own, own + std::ptrdiff_t(texelsOfProbe() * count));
@@ -340,11 +340,11 @@ LiveTransport SurfaceBaker::transport(const FieldData& lit, uint32_t count, cons
     for (size_t facing = 0; facing < cells.straight.size(); ++facing)
     {
         if (cells.straight[facing].x < 0.0f) continue;
-        live.places.push_back(uint32_t(surfaceTexelWords(lit.info) + gpu::kCellWords * (facing / 6) + facing % 6));
+        live.places.push_back(uint32_t(surfaceTexelWords(data.info) + gpu::kCellWords * (facing / 6) + facing % 6));
         const auto own = cells.links.begin() + std::ptrdiff_t(facing * desc.rays);
         linksOf.emplace_back(own, own + std::ptrdiff_t(count));
     }
-    const std::vector<HiddenLinks> below = hiddenLinks(lit, hidden, *desc.triangles, count);
+    const std::vector<HiddenLinks> below = hiddenLinks(data, hidden, *desc.triangles, count);
     for (const HiddenLinks& place : below)
     {
         live.places.push_back(place.word);

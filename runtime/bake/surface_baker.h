@@ -62,11 +62,11 @@ public:
     /// Refines texels of a field whose light was read last.
     /// @param share   of all texels, at most
     /// @param layout  where; null: found
-    Status refine(FieldData& lit, float share, LightLayout* layout = nullptr);
+    Status refine(FieldData& data, float share, LightLayout* layout = nullptr);
     /// What lets lights move, but for the albedo: after refine().
     /// @param count  links of each texel and place, at most Desc::rays
     /// @param hidden  that the field was refined with
-    LiveTransport transport(const FieldData& lit, uint32_t count, const HiddenPlaces& hidden) const;
+    LiveTransport transport(const FieldData& data, uint32_t count, const HiddenPlaces& hidden) const;
     uint64_t hostBytes() const { return uint64_t(links.size()) * sizeof(uint32_t); }
 
 private:

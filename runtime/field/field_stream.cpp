@@ -121,10 +121,10 @@ void MapReader::run(std::stop_token stop)
 /// Takes what passes have noted since the last record. They may be running: what they note meanwhile is taken by the next one.
 void FieldStream::State::noteAsked()
 {
-    const std::span counts(reinterpret_cast<uint32_t*>(field.state().maps->asked.mapped()), asked.size());
+    const std::span noted(reinterpret_cast<uint32_t*>(field.state().maps->asked.mapped()), asked.size());
     for (size_t probe = 0; probe < asked.size(); ++probe)
     {
-        const auto now = float(std::atomic_ref(counts[probe]).exchange(0u, std::memory_order_relaxed));
+        const auto now = float(std::atomic_ref(noted[probe]).exchange(0u, std::memory_order_relaxed));
         asked[probe] = std::max(now, kKept * asked[probe]);
         if (asked[probe] < kLeastAsked) asked[probe] = 0.0f;
     }

@@ -528,7 +528,7 @@ bool applyMeta(std::string_view text, FieldData& field)
     field.sceneName = scene->get<std::string>();
     const auto texts = [](const nlohmann::json& list, std::vector<std::string>& to)
     {
-        if (!list.is_array() || !std::ranges::all_of(list, [](const nlohmann::json& text) { return text.is_string(); })) return false;
+        if (!list.is_array() || !std::ranges::all_of(list, [](const nlohmann::json& one) { return one.is_string(); })) return false;
         to = list.get<std::vector<std::string>>();
         return true;
     };

@@ -138,6 +138,10 @@ public:
     /// that was made with a light field's is used with the next field's.
     Result<VkDescriptorSetLayout> setLayout(std::span<const VkDescriptorSetLayoutBinding> bindings);
 
+    /// What Pipeline::compute() makes, once for all that is asked for alike, for a driver takes longest for that; it lives as long as this.
+    /// Empty where there is none yet.
+    std::shared_ptr<const void>& computePipeline(const std::vector<uint64_t>& key) { return computePipelines[key]; }
+
     Error failure(const char* call, VkResult result) const;
 
 private:
@@ -151,7 +155,8 @@ private:
     Handle<VkFence, &VulkanFunctions::DestroyFence> fence;
     Buffer staging;
     using SetLayout = Handle<VkDescriptorSetLayout, &VulkanFunctions::DestroyDescriptorSetLayout>;
-    std::map<std::vector<std::array<uint32_t, 4>>, SetLayout> setLayouts; // by binding, type, count and stages of each
+    std::map<std::vector<std::array<uint32_t, 4>>, SetLayout> setLayouts;          // by binding, type, count and stages of each
+    std::map<std::vector<uint64_t>, std::shared_ptr<const void>> computePipelines; // after the layouts that they must not outlive
     std::unique_ptr<NanScan> scan;
 };
 

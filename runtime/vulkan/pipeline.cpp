@@ -3,6 +3,9 @@
 #include <cassert>
 #include <cstddef>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 namespace sconce
 {
 
@@ -115,7 +118,7 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, const Mod
 
 } // namespace
 
-Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes)
+Status Pipeline::makeLayout(Made& of, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes) const
 {
     const VkPushConstantRange range{stages, 0, pushBytes};
     VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
@@ -123,7 +126,7 @@ Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_
     info.pSetLayouts = sets.data();
     info.pushConstantRangeCount = pushBytes > 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
-    const VkResult result = pipelineLayout.make(*gpu, gpu->vk.CreatePipelineLayout, gpu->host.device, &info, gpu->host.allocationCallbacks);
+    const VkResult result = of.layout.make(*gpu, gpu->vk.CreatePipelineLayout, gpu->host.device, &info, gpu->host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu->failure("vkCreatePipelineLayout", result);
     return success();
 }
@@ -131,30 +134,43 @@ Status Pipeline::makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_
 Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
                                    std::span<const ShaderConstant> constants, VkPipelineCreateFlags flags)
 {
-    Pipeline made;
-    made.gpu = &gpu;
-    made.stages = VK_SHADER_STAGE_COMPUTE_BIT;
-    if (auto status = made.makeLayout(sets, pushBytes); !status) return status.error();
+    Pipeline pipeline;
+    pipeline.gpu = &gpu;
+    pipeline.stages = VK_SHADER_STAGE_COMPUTE_BIT;
+    std::vector<uint64_t> key = {XXH3_64bits(shader.data(), shader.size_bytes()), shader.size(), pushBytes, flags, sets.size()};
+    for (const VkDescriptorSetLayout set : sets) key.push_back(reinterpret_cast<uint64_t>(set));
+    for (const ShaderConstant& constant : constants) key.push_back(uint64_t(constant.id) << 32 | constant.value);
+    std::shared_ptr<const void>& known = gpu.computePipeline(key);
+    if (known)
+    {
+        pipeline.made = std::static_pointer_cast<const Made>(known);
+        return pipeline;
+    }
+    const auto made = std::make_shared<Made>();
+    if (auto status = pipeline.makeLayout(*made, sets, pushBytes); !status) return status.error();
     const Module module(gpu, shader);
     if (module.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", module.result);
     const Specialization specialization(constants);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
     info.flags = flags;
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
-    info.layout = made.pipelineLayout.get();
-    const VkResult result = made.pipeline.make(gpu, gpu.vk.CreateComputePipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
-                                               gpu.host.allocationCallbacks);
+    info.layout = made->layout.get();
+    const VkResult result = made->pipeline.make(gpu, gpu.vk.CreateComputePipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
+                                                gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateComputePipelines", result);
-    return made;
+    pipeline.made = made;
+    known = made;
+    return pipeline;
 }
 
 Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
 {
-    Pipeline made;
-    made.gpu = &gpu;
-    made.bindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    made.stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    if (auto status = made.makeLayout(desc.sets, desc.pushBytes); !status) return status.error();
+    Pipeline pipeline;
+    pipeline.gpu = &gpu;
+    pipeline.bindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    pipeline.stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    const auto made = std::make_shared<Made>();
+    if (auto status = pipeline.makeLayout(*made, desc.sets, desc.pushBytes); !status) return status.error();
     const Module vertex(gpu, desc.vertex), fragment(gpu, desc.fragment);
     if (vertex.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", vertex.result);
     if (fragment.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", fragment.result);
@@ -207,18 +223,18 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     info.pDepthStencilState = &depth;
     info.pColorBlendState = &color;
     info.pDynamicState = &dynamic;
-    info.layout = made.pipelineLayout.get();
-    const VkResult result = made.pipeline.make(gpu, gpu.vk.CreateGraphicsPipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
-                                               gpu.host.allocationCallbacks);
+    info.layout = made->layout.get();
+    const VkResult result = made->pipeline.make(gpu, gpu.vk.CreateGraphicsPipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
+                                                gpu.host.allocationCallbacks);
     if (result != VK_SUCCESS) return gpu.failure("vkCreateGraphicsPipelines", result);
-    return made;
+    pipeline.made = made;
+    return pipeline;
 }
 
 void Pipeline::bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets) const
 {
-    gpu->vk.CmdBindPipeline(cmd, bindPoint, pipeline.get());
-    if (!sets.empty())
-        gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, pipelineLayout.get(), 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
+    gpu->vk.CmdBindPipeline(cmd, bindPoint, handle());
+    if (!sets.empty()) gpu->vk.CmdBindDescriptorSets(cmd, bindPoint, layout(), 0, uint32_t(sets.size()), sets.data(), 0, nullptr);
 }
 
 Result<Sampler> Sampler::create(Gpu& gpu, const VkSamplerCreateInfo& info)

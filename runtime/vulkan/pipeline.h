@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,7 +45,6 @@ struct ShaderConstant
     uint32_t value; // or the bits of a float
 };
 
-/// A compute or graphics pipeline with its layout; move-only.
 inline constexpr uint32_t kMostWorkgroups = 65535; // along an axis, that every device dispatches
 
 /// Of a pass over so many invocations: its shader goes on by strides where they are too many for one row.
@@ -53,9 +53,11 @@ constexpr uint32_t workgroupsInARow(uint64_t invocations, uint32_t group)
     return uint32_t(std::min<uint64_t>((invocations + group - 1) / group, kMostWorkgroups));
 }
 
+/// A compute or graphics pipeline with its layout.
 class Pipeline
 {
 public:
+    /// One for all that is made alike on a Gpu: making it again, as for a window of another size, costs nothing.
     /// @param constants  those with an id that the shader lacks change nothing
     static Result<Pipeline> compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
                                     std::span<const ShaderConstant> constants = {}, VkPipelineCreateFlags flags = 0);
@@ -75,22 +77,26 @@ public:
     };
     static Result<Pipeline> graphics(Gpu& gpu, const Graphics& desc);
 
-    VkPipeline handle() const { return pipeline.get(); }
-    VkPipelineLayout layout() const { return pipelineLayout.get(); }
-    explicit operator bool() const { return bool(pipeline); }
+    VkPipeline handle() const { return made->pipeline.get(); }
+    VkPipelineLayout layout() const { return made->layout.get(); }
+    explicit operator bool() const { return bool(made); }
 
     void bind(VkCommandBuffer cmd, std::span<const VkDescriptorSet> sets = {}) const;
     template <class T> void push(VkCommandBuffer cmd, const T& values) const
     {
         static_assert(sizeof(T) % 4 == 0 && sizeof(T) <= 128, "push constants are at most 128 bytes everywhere");
-        gpu->vk.CmdPushConstants(cmd, pipelineLayout.get(), stages, 0, sizeof(T), &values);
+        gpu->vk.CmdPushConstants(cmd, layout(), stages, 0, sizeof(T), &values);
     }
 
 private:
-    Status makeLayout(std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes);
+    struct Made
+    {
+        Handle<VkPipelineLayout, &VulkanFunctions::DestroyPipelineLayout> layout;
+        Handle<VkPipeline, &VulkanFunctions::DestroyPipeline> pipeline;
+    };
+    Status makeLayout(Made& of, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes) const;
     Gpu* gpu = nullptr;
-    Handle<VkPipelineLayout, &VulkanFunctions::DestroyPipelineLayout> pipelineLayout;
-    Handle<VkPipeline, &VulkanFunctions::DestroyPipeline> pipeline;
+    std::shared_ptr<const Made> made;
     VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
     VkShaderStageFlags stages = 0;
 };

@@ -41,7 +41,12 @@ inline FieldData smallField(uint32_t chart = gpu::kChartCube, uint32_t size = 8,
         field.info.hidden = 5u << gpu::kHiddenShiftBits | 1u;
         field.surfaceLight.resize(size_t(probes) * 6 * 4 * 4 * 3 / 2 + cellWords(field.info) + size_t(2) * gpu::kFineWords +
                                   hiddenWords(field.info));
-        field.lamps.push_back({.radiance = glm::vec3(3.0f), .far = 2.0f, .size = 64, .firstWord = sizeof(gpu::Lamp) / 4});
+        gpu::Lamp lamp{};
+        lamp.radiance = glm::vec3(3.0f);
+        lamp.far = 2.0f;
+        lamp.size = 64;
+        lamp.firstWord = sizeof(gpu::Lamp) / 4;
+        field.lamps.push_back(lamp);
         field.lampMaps.resize(lampMapWords(64));
     }
     for (auto* words :

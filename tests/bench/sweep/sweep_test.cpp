@@ -1,4 +1,6 @@
 // Which points stand on the device together to be timed, where it has room for few.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "bench/sweep/sweep.h"
@@ -58,9 +60,10 @@ std::unique_ptr<SceneBench> benchOfCornell(ValidatedDevice& device, const TestFo
 }
 
 /// The first `count` of these points, measured on a device with so much memory.
-Swept sweepWithin(uint64_t memoryBudget, size_t count)
+/// @param folder  whose field is kept for the next of these
+Swept sweepWithin(const TestFolder& folder, uint64_t memoryBudget, size_t count)
 {
-    const TestFolder folder;
+    std::filesystem::remove_all(folder.path / "cache" / "points"); // so that they are measured anew
     ValidatedDevice device(memoryBudget);
     auto points = pointsOfOneField();
     points.resize(std::min(count, points.size()));
@@ -81,9 +84,11 @@ Swept sweepWithin(uint64_t memoryBudget, size_t count)
 
 TEST(Sweep, APointThatFindsNoMemoryBesideOthersIsMeasuredInTheNextGroup)
 {
-    const Swept two = sweepWithin(0, 2);
-    ASSERT_GT(two.peakBytes, sweepWithin(0, 1).peakBytes) << "a second point takes nothing more, and nothing is tested";
-    const Swept all = sweepWithin(two.peakBytes, 4);
+    const TestFolder folder;
+    const Swept two = sweepWithin(folder, 0, 2);
+    ASSERT_TRUE(std::filesystem::exists(folder.path / "cache" / "points"));
+    ASSERT_GT(two.peakBytes, sweepWithin(folder, 0, 1).peakBytes) << "a second point takes nothing more, and nothing is tested";
+    const Swept all = sweepWithin(folder, two.peakBytes, 4);
     ASSERT_EQ(all.points.size(), 4u);
     for (const Json& point : all.points)
     {

@@ -48,7 +48,7 @@ TEST_F(OutsideCamera, SeesOpenGroundInTheLightOfTheTruth)
     reference.camera = camera;
     const auto truth = renderReference(scene, reference);
     ASSERT_TRUE(truth) << truth.error().message;
-    ImageSet ours{.width = frame->width, .height = frame->height};
+    ImageSet ours{frame->width, frame->height, {}};
     const float* first = &frame->diffuseIndirect[0].x;
     ours.add("diffuse_indirect", 3).pixels.assign(first, first + 3 * frame->diffuseIndirect.size());
     CompareSettings compare;

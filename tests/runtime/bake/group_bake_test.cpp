@@ -270,7 +270,10 @@ TEST_F(GroupBake, LightLeansAsTheGroupsThatAreOn)
             if (word == 0 || word == Text::kBlackWord || Text::isRefined(word) || Text::isRefined(fresh->surfaceLight[i])) continue;
             const double light = double(Text::luminance(Text::unpackSharedExponent(word)));
             const double apart = double(glm::length(ours.tiltOf(i) - theirs.tiltOf(i)));
-            if (alone) ASSERT_EQ(apart, 0.0) << i;
+            if (alone)
+            {
+                ASSERT_EQ(apart, 0.0) << i;
+            }
             off += light * apart;
             all += light;
         }

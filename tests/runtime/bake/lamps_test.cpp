@@ -45,7 +45,7 @@ Lamps lampsOf(const Scene& scene)
     const auto rays = TriangleRays::build(scene);
     const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
     std::vector<gpu::ProbeHeader> probes;
-    for (const vec3& probe : kProbes) probes.push_back({.centre = (probe - space.origin) / space.scale});
+    for (const vec3& probe : kProbes) probes.emplace_back().centre = (probe - space.origin) / space.scale;
     return findLamps(*rays, space, probes, 512);
 }
 

@@ -249,8 +249,8 @@ TEST_F(SurfaceBake, IsDroppedWhereNoFrameReadsIt)
         settings.surfaceTexels = 26;
         settings.octree.voxels = 16;
         settings.readsSurfaces = reads;
-        BakeReport report;
-        auto field = bakeLightField(device.host(), scene, std::vector<vec3>{{0.1f, 1.0f, 0.2f}}, settings, {}, report);
+        BakeReport spent;
+        auto field = bakeLightField(device.host(), scene, std::vector<vec3>{{0.1f, 1.0f, 0.2f}}, settings, {}, spent);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     };

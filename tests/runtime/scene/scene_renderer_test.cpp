@@ -439,7 +439,10 @@ TEST_F(SceneRendererTest, ObjectThatTheLightFieldDoesNotKnowIsLitAndReflects)
             asked += diffuse[3 * i + 1] + glossy[3 * i + 1];
         }
         ASSERT_GT(pixels, 60u);
-        if (metallic < 1.0f) EXPECT_GT(frame->diffuseFrom[1], pixels / 2) << "from cells";
+        if (metallic < 1.0f)
+        {
+            EXPECT_GT(frame->diffuseFrom[1], pixels / 2) << "from cells";
+        }
         EXPECT_EQ(frame->diffuseFrom[0], 0u) << "from nothing";
         EXPECT_NEAR(got / asked, 1.0, 0.15) << "roughness " << roughness << ", metallic " << metallic;
     }
