@@ -552,7 +552,7 @@ def day(arguments):
     own = list(rows.values())
     rows["all"] = {"label": "least and most", "hours": str(len(own))} | {key: least_and_most([row[key] for row in own]) for key in own[0] if key != "label"}
     write("day.json", "A day in Sponza: one field with live links, its sky a group, under six suns and skies, against the path tracer", ["bench/pages/day_sheet.sh"],
-          ["320x180, 256 paths a pixel of up to 16 bounces, pixels in which both see the same surface; mean: over the reference's"], rows)
+          ["256x144, 192 paths a pixel of up to 16 bounces, pixels in which both see the same surface; mean: over the reference's"], rows)
 
 
 def least_and_most(texts):
