@@ -159,8 +159,8 @@ Result<TriangleRays> TriangleRays::build(const Scene& scene)
     for (uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle)
         if (state->presence[triangle] != Presence::absent)
             state->triangleOf[state->presence[triangle] == Presence::masked].push_back(triangle);
-    // No wider than AVX2: kernels of other widths answer a few grazing rays otherwise, and one scene should be placed and baked alike on
-    // every processor of the last ten years.
+    // No wider than AVX2: Embree's kernels differ in a few rays (by SSE's, a probe of the small box stands elsewhere), and processors with
+    // wider ones shouldn't place and bake otherwise for that.
     state->device = rtcNewDevice("max_isa=avx2");
     if (!state->device)
         return Error{ErrorCode::deviceFailure,

@@ -7,10 +7,13 @@
 // the light that a reference of N - 1 bounces has; one ray on a field of all bounces has all. Rays are traced on the device, the rest is
 // done here. Prints JSON on stdout: of each ray of a path, how many are right, against Embree along the same ray; errors of both terms
 // against the reference, and those of Embree's path tracer by as many paths.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -38,8 +41,8 @@ using Json = nlohmann::ordered_json;
 using Text = twin::LightFieldTwin<float>;
 
 constexpr float kRight = 0.002f, kNearlyRight = 0.01f; // of the true distance
-constexpr float kOffSurface = 1e-3f;                   // of the distance to the probe that saw it, that a ray starts off a surface
-constexpr uint32_t kJudged = 2;                        // paths of each pixel whose rays are judged
+constexpr float kOffSurface = 1e-3f; // of the distance to the probe that saw it, that a ray starts off a surface, as surface_rays.glsl
+constexpr uint32_t kJudged = 2;      // paths of each pixel whose rays are judged
 
 struct Options
 {

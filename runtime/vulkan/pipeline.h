@@ -57,7 +57,7 @@ constexpr uint32_t workgroupsInARow(uint64_t invocations, uint32_t group)
 class Pipeline
 {
 public:
-    /// One for all that is made alike on a Gpu: making it again, as for a window of another size, costs nothing.
+    /// One for all that is made alike on a Gpu: making it again, as for a window of another size, asks no compiler.
     /// @param constants  those with an id that the shader lacks change nothing
     static Result<Pipeline> compute(Gpu& gpu, Spirv shader, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes,
                                     std::span<const ShaderConstant> constants = {}, VkPipelineCreateFlags flags = 0);
