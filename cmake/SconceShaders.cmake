@@ -1,4 +1,4 @@
-# sconce_shaders(TARGET name SOURCES a.comp b.vert ... [VARIANTS source.comp:NAME:DEFINE ...])
+# sconce_shaders(TARGET name SOURCES a.comp b.vert ... [VARIANTS source.comp:NAME:DEFINE[,DEFINE] ...])
 # Compiles GLSL with glslang, checks it with spirv-val and embeds it: <build>/spirv/<name>.h declares one
 # `inline constexpr uint32_t name_stage[]` a shader (dots become underscores).
 find_program(SCONCE_GLSLANG glslangValidator REQUIRED)
@@ -29,8 +29,9 @@ function(sconce_shaders)
         string(REPLACE ":" ";" parts ${variant})
         list(GET parts 0 source)
         list(GET parts 1 variable)
-        list(GET parts 2 define)
-        sconce_add_spirv(header ${CMAKE_CURRENT_SOURCE_DIR}/${source} ${variable} -D${define})
+        list(GET parts 2 defines)
+        string(REPLACE "," ";-D" defines ${defines})
+        sconce_add_spirv(header ${CMAKE_CURRENT_SOURCE_DIR}/${source} ${variable} -D${defines})
         list(APPEND headers ${header})
     endforeach()
     add_custom_target(${ARG_TARGET}_spirv DEPENDS ${headers})

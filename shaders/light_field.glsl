@@ -37,6 +37,11 @@ bool holdsPrefiltered() { return (kFieldFlags & kHoldsPrefiltered) != 0u; }
 bool holdsLive() { return (kFieldFlags & kHoldsLive) != 0u; }
 bool streams() { return (kFieldFlags & kStreams) != 0u; }
 int probeOrder() { return int((kFieldFlags >> kOrderShift) & 3u); }
+#ifdef SCONCE_REFILLS
+bool shortTurns() { return true; }
+#else
+bool shortTurns() { return false; }
+#endif
 bool mapsInBlocks() { return (kFieldFlags & kMapsInBlocks) != 0u; }
 bool onOctahedron() { return (kFieldFlags & kOnOctahedron) != 0u; }
 // Whether the field holds the maps' radiance; else only its prefiltered form, or none.

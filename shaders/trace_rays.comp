@@ -3,4 +3,5 @@
 #define SCONCE_ASKS_FOR_MAPS
 #include "light_field.glsl"
 #define SCONCE_QUERY sconceQuery
+#include "ray_walk.glsl"
 #include "trace_rays.glsl"

@@ -291,7 +291,7 @@ int drawWithoutGeometry(const RenderOptions& options, Gpu& gpu, const std::strin
 {
     const Stopwatch watch;
     const std::optional<Baseline> baseline = baselineNamed(options.tracer);
-    const Result<RayTracer> tracer = makeRayTracer(gpu, field, baseline ? traceRaysPass(*baseline) : Spirv{});
+    const Result<RayTracer> tracer = makeRayTracer(gpu, field, baseline ? traceRaysPass(*baseline) : RayShaders{});
     if (!tracer) return fail(tracer.error());
     FieldPicture drawn;
     std::vector<double> milliseconds;

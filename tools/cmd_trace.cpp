@@ -78,7 +78,7 @@ Status traceOnDevice(const FieldData& field, std::optional<Baseline> baseline, c
     if (!gpu) return gpu.error();
     Result<LightField> lightField = makeLightField(**gpu, field);
     if (!lightField) return lightField.error();
-    Result<RayTracer> tracer = makeRayTracer(**gpu, *lightField, baseline ? traceRaysPass(*baseline) : Spirv{});
+    Result<RayTracer> tracer = makeRayTracer(**gpu, *lightField, baseline ? traceRaysPass(*baseline) : RayShaders{});
     if (!tracer) return tracer.error();
     double milliseconds = 0.0;
     Status status = inPieces(rays.size(), progress,

@@ -4,7 +4,7 @@
 # Then times, at the clock that stands beside them. Exit 1 where something is wrong or missing; the file says what.
 # Environment: VK_DRIVER_FILES where the loader finds no driver; SCONCE_GPU_SECONDS most seconds of one part [150]; SCONCE_GPU_SIZE of frames
 # [1920x1080], SCONCE_GPU_LARGE of a larger one [3840x2160]; SCONCE_GPU_FRAMES timed [50]; SCONCE_GPU_WARM seconds before times are taken [2];
-# SCONCE_GPU_PARTS a regular expression of the parts to measure [all].
+# SCONCE_GPU_LIST rays of a timed list [2097152]; SCONCE_GPU_PARTS a regular expression of the parts to measure [all].
 set -uo pipefail
 export LC_ALL=C # figures with a point
 file=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/gpu.json}")
@@ -14,6 +14,7 @@ if [[ ! -d bin ]]; then # as it was unpacked: the rest is in an archive of its o
     exec ./run.sh "$file"
 fi
 most=${SCONCE_GPU_SECONDS:-150} size=${SCONCE_GPU_SIZE:-1920x1080} large=${SCONCE_GPU_LARGE:-3840x2160} frames=${SCONCE_GPU_FRAMES:-50} warm=${SCONCE_GPU_WARM:-2}
+list=${SCONCE_GPU_LIST:-2097152}
 export LD_LIBRARY_PATH=$PWD/lib VK_LAYER_PATH=$PWD/lib VK_ADD_LAYER_PATH=$PWD/lib
 work=$(mktemp -d) judged=$(< expected/judged) wrong=()
 ./sample_clock.sh > "$work/clocks" 2> /dev/null &
@@ -87,8 +88,11 @@ part picture_all like_expected all
 
 octahedral=$work/octahedral.sconce
 part bake_octahedral bin/sconce bake "$(scene_of "$judged")" --probes "fields/$judged.probes.json" --resolution 320 --chart octahedral --bounces 0 -o "$octahedral" --no-journal --json --quiet
-part race bin/sconce_replay "rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-octree="$octahedral" --field wang="fields/$judged.sconce" --timed 262144 --runs 25 --warm-up "$warm" --json
-part race_cold bin/sconce_replay "rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-octree="$octahedral" --timed 262144 --runs 10 --cold 256 --warm-up "$warm" --json
+# Lists that fill a large card several times over, each lane with several rays as the device has it, and with one.
+race=("rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-octree="$octahedral" --field wang="fields/$judged.sconce" --timed "$list" --warm-up "$warm" --json)
+part race bin/sconce_replay "${race[@]}" --runs 25
+part race_plain env SCONCE_RAYS_A_LANE=1 bin/sconce_replay "${race[@]}" --runs 25
+part race_cold bin/sconce_replay "${race[@]}" --runs 10 --cold 256
 
 # frames NAME SCENE FIELD OPTIONS...: milliseconds of each pass
 frames() {

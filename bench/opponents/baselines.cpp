@@ -20,7 +20,10 @@
 #include "spirv/trace_rays_b0.h"
 #include "spirv/trace_rays_b0plus.h"
 #include "spirv/trace_rays_b0plus_octree.h"
+#include "spirv/trace_rays_b0plus_octree_refilled.h"
+#include "spirv/trace_rays_b0plus_refilled.h"
 #include "spirv/trace_rays_wang.h"
+#include "spirv/trace_rays_wang_refilled.h"
 
 namespace sconce
 {
@@ -30,16 +33,17 @@ namespace
 struct Entry // of the table, in the order of the numbers
 {
     std::string_view name;
-    Spirv rays;
+    RayShaders rays;
     LightShaders light;
 };
 
 const Entry& entryOf(Baseline baseline)
 {
-    static const Entry table[] = {{"b0", trace_rays_b0, {trace_glossy_b0, gather_light_2017}},
-                                  {"b0plus", trace_rays_b0plus, {trace_glossy_b0plus, gather_light_2021}},
-                                  {"b0plus-octree", trace_rays_b0plus_octree, {trace_glossy_b0plus_octree, {}}},
-                                  {"wang", trace_rays_wang, {trace_glossy_wang, {}}}};
+    static const Entry table[] = {
+        {"b0", {trace_rays_b0, {}}, {trace_glossy_b0, gather_light_2017}},
+        {"b0plus", {trace_rays_b0plus, trace_rays_b0plus_refilled}, {trace_glossy_b0plus, gather_light_2021}},
+        {"b0plus-octree", {trace_rays_b0plus_octree, trace_rays_b0plus_octree_refilled}, {trace_glossy_b0plus_octree, {}}},
+        {"wang", {trace_rays_wang, trace_rays_wang_refilled}, {trace_glossy_wang, {}}}};
     return table[uint32_t(baseline)];
 }
 
@@ -142,7 +146,7 @@ Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t low
     return field;
 }
 
-Spirv traceRaysPass(Baseline baseline)
+RayShaders traceRaysPass(Baseline baseline)
 {
     return entryOf(baseline).rays;
 }

@@ -42,8 +42,8 @@ uint32_t bestLowFactor(Baseline baseline);
 /// @param lowFactor  8, 16 or 32; 0: bestLowFactor
 Result<FieldData> baselineField(FieldData field, Baseline baseline, uint32_t lowFactor = 0);
 
-/// A pass with the interface of trace_rays.comp, for makeRayTracer().
-Spirv traceRaysPass(Baseline baseline);
+/// Passes with the interface of trace_rays.comp, for makeRayTracer().
+RayShaders traceRaysPass(Baseline baseline);
 
 /// Passes for makeIndirectLight(). Grids are lit by the eight corners of a point's cell: b0 by the weights of McGuire et al. 2017, b0plus
 /// by those of Majercik et al. 2021; what has lists is lit by them, as ours is.

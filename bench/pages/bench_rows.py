@@ -432,14 +432,21 @@ def gpu(arguments):
     write("gpu_frames.json", "Milliseconds of each pass on a GPU", ["bench/gpu/bundle.sh", "bench/gpu/run.sh", "bench_rows.py gpu"], notes, rows, machine)
     labels = {"ours": "Sconce", "b0plus-octree": "B0+, same probes and lists", "wang": "W', same probes and lists"}
     rows = {}
-    raced, cold = ({entry["tracer"]: entry for entry in parts[name]["result"] or []} for name in ("race", "race_cold"))
+    raced, plain, cold = ({entry["tracer"]: entry for entry in parts[name]["result"] or []} for name in ("race", "race_plain", "race_cold"))
+    orders = {"order": "coherent_ms", "shuffled": "incoherent_ms"}
+    # Each tracer in the form that is the faster one for it.
+    best = lambda tracer, order: min((one[tracer][orders[order]] for one in (raced, plain)), key=lambda times: times["median"])
     for tracer, entry in raced.items():
-        rate = lambda of, order: f"{of[order]['mrays_per_s']:.0f}"
-        ratio = lambda of, order: f"{of[tracer][order]['median'] / of['b0plus-octree'][order]['median']:.2f}"
-        rows[slug(tracer)] = {"label": labels[tracer], "right_1": f"{100 * entry['right_1']:.2f}", "right_02": f"{100 * entry['right_02']:.2f}", "reads": f"{entry['distance_reads']['mean']:.1f}",
-                              "order": rate(entry, "coherent_ms"), "shuffled": rate(entry, "incoherent_ms"), "ratio_order": ratio(raced, "coherent_ms"), "ratio_shuffled": ratio(raced, "incoherent_ms")}
+        row = {"label": labels[tracer], "right_1": f"{100 * entry['right_1']:.2f}", "right_02": f"{100 * entry['right_02']:.2f}", "reads": f"{entry['distance_reads']['mean']:.1f}"}
+        for order, times in orders.items():
+            row |= {order: f"{entry[times]['mrays_per_s']:.0f}", f"plain_{order}": f"{plain[tracer][times]['mrays_per_s']:.0f}",
+                    f"ratio_{order}": f"{best(tracer, order)['median'] / best('b0plus-octree', order)['median']:.2f}",
+                    f"ratio_plain_{order}": f"{plain[tracer][times]['median'] / plain['b0plus-octree'][times]['median']:.2f}",
+                    f"refill_{order}": f"{entry[times]['median'] / plain[tracer][times]['median']:.2f}"}
         if tracer in cold:
-            rows[slug(tracer)] |= {"cold": rate(cold[tracer], "coherent_ms"), "ratio_cold": ratio(cold, "coherent_ms")}
+            row |= {"cold": f"{cold[tracer]['coherent_ms']['mrays_per_s']:.0f}",
+                    "ratio_cold": f"{cold[tracer]['coherent_ms']['median'] / cold['b0plus-octree']['coherent_ms']['median']:.2f}"}
+        rows[slug(tracer)] = row
     for name in parts:  # what a GPU answers otherwise than the processor
         if name.startswith("rays_") and parts[name]["result"]:
             rows[slug(name)] = {"label": name, "rays": str(parts[name]["result"][0]["rays"]), "differs": str(parts[name]["result"][0]["cpu_differs"])}
@@ -450,7 +457,8 @@ def gpu(arguments):
         rows |= {slug(one["pass"]): {"label": one["pass"]} | {slug(key): str(value) for key, value in one["statistics"].items() if key in
                                                                   ("subgroup_size", "Register Count", "Shared Memory Size", "Binary Size", "VGPRs", "Spilled VGPRs", "Instructions")} for one in parts["passes"]["result"]["passes"]}
     write("gpu_rays.json", "Rays, answers and passes on a GPU", ["bench/gpu/bundle.sh", "bench/gpu/run.sh", "bench_rows.py gpu"],
-          notes + ["million rays a second: rays of one camera's picture, in its order and shuffled; cold: 256 MiB are written before each pass;"
+          notes + ["million rays a second: rays of one camera's picture, in its order and shuffled, again and again; plain: a ray a lane, else four, see shaders/refill.glsl; ratio: of the faster form of each;"
+                   " refill: of a tracer's plain time; cold: 256 MiB are written before each pass;"
                    " Sconce and W' on cube faces of 128 texels, B0+ on octahedral maps of 320",
                    "differs: rays that the same text on the machine's processor answers otherwise"], rows, machine)
 

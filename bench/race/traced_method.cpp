@@ -142,7 +142,7 @@ Result<std::unique_ptr<TracedMethod>> TracedMethod::create(Gpu& gpu, FieldData f
     auto onDevice = makeLightField(gpu, made->field, how.quality);
     if (!onDevice) return onDevice.error();
     made->onDevice.emplace(std::move(*onDevice));
-    auto tracer = makeRayTracer(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : Spirv());
+    auto tracer = makeRayTracer(gpu, *made->onDevice, how.opponent ? traceRaysPass(*how.opponent) : RayShaders());
     if (!tracer) return tracer.error();
     made->tracer.emplace(std::move(*tracer));
     auto timer = GpuTimer::create(gpu, kMostPasses);

@@ -55,14 +55,14 @@ Result<Row> score(TracedMethod& method, const RaySet& set, bool cpu)
     return row;
 }
 
-/// The rays that are timed: `count` evenly taken of all.
+/// The rays that are timed: `count` evenly taken of all, or all again and again.
 RaySet timedRays(const RaySet& set, size_t count)
 {
     RaySet some;
     some.diagonal = set.diagonal;
     for (size_t k = 0; k < count; ++k)
     {
-        const size_t i = k * set.size() / count;
+        const size_t i = count < set.size() ? k * set.size() / count : k % set.size();
         some.origins.push_back(set.origins[i]);
         some.directions.push_back(set.directions[i]);
         some.normals.push_back(set.normals[i]);
@@ -75,7 +75,7 @@ Status timeAll(std::vector<Row>& rows, std::span<const std::unique_ptr<TracedMet
                const RaceSettings& settings, const std::optional<OutsideRunner>& outside)
 {
     // All tracers and the outside runner get the same rays in the same two orders.
-    const RaySet rays = timedRays(set, std::min<size_t>(set.size(), settings.timed));
+    const RaySet rays = timedRays(set, settings.timed);
     const std::vector<uint32_t> order = shuffledOrder(rays.size(), settings.seed);
     RaySet shuffled;
     for (uint32_t i : order)
@@ -220,7 +220,7 @@ Status raceTracers(Gpu& gpu, const std::string& device, const RaySet& set, const
         rows.push_back(std::move(*row));
     }
     if (!settings.json) printScores(rows, set.size(), device);
-    const size_t timed = std::min<size_t>(set.size(), settings.timed);
+    const size_t timed = settings.timed;
     if (settings.runs > 0)
     {
         if (auto status = timeAll(rows, methods, set, settings, outside); !status) return status;

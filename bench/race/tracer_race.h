@@ -16,7 +16,7 @@ struct RaceSettings
 {
     std::vector<std::string> fields;           // [TRACER=]FILE each, as TracedMethod::create reads them
     uint32_t runs = knobs::timedRuns.value;    // timed; 0 takes no times
-    uint32_t timed = knobs::timedRays.value;   // rays of a timed run, evenly taken of all
+    uint32_t timed = knobs::timedRays.value;   // rays of a timed run, evenly taken of all, or all again and again
     uint64_t seed = 1;                         // of their shuffling
     float warmUp = knobs::warmUpSeconds.value; // seconds of runs that don't count
     uint32_t cold = 0;                         // MiB written between timed passes, so that no cache holds the field

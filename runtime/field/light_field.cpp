@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstring>
 
@@ -11,6 +12,7 @@
 #include "shaders/shared/field_passes.h"
 
 #include "spirv/trace_rays_comp.h"
+#include "spirv/trace_rays_refilled_comp.h"
 
 namespace sconce
 {
@@ -359,31 +361,37 @@ Status LightField::setQuality(const Quality& quality)
 
 RayTracer::RayTracer(std::shared_ptr<State> made) : shared(std::move(made)) {}
 
-Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, Spirv shader)
+Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, RayShaders shaders)
 {
+    if (shaders.plain.empty()) shaders = {trace_rays_comp, trace_rays_refilled_comp};
     const VkDescriptorSetLayout layouts[] = {field.layout()};
     const auto constants = shaderConstants(field);
-    auto pipeline =
-        Pipeline::compute(gpu, shader.empty() ? Spirv(trace_rays_comp) : shader, layouts, sizeof(gpu::TraceRaysPush), constants);
+    const bool refills = gpu.raysALane > 1 && !shaders.refilled.empty();
+    auto pipeline = Pipeline::compute(gpu, refills ? shaders.refilled : shaders.plain, layouts, sizeof(gpu::TraceRaysPush), constants);
     if (!pipeline) return pipeline.error();
-    return RayTracer(std::make_shared<RayTracer::State>(RayTracer::State{gpu.shared_from_this(), field, std::move(*pipeline)}));
+    return RayTracer(std::make_shared<RayTracer::State>(
+        RayTracer::State{gpu.shared_from_this(), field, std::move(*pipeline), refills ? gpu.raysALane : 1}));
 }
 
 namespace
 {
+
+constexpr uint32_t kLanesToFill = 65536; // of a large GPU: 132 multiprocessors of 16 warps, as many as the trace's registers leave
 
 /// Rays and hits are named by address, not by descriptor: records of one tracer don't disturb each other.
 void recordPass(const RayTracer::State& tracer, VkCommandBuffer cmd, VkDeviceAddress rays, VkDeviceAddress hits, uint32_t count)
 {
     const VkDescriptorSet sets[] = {tracer.field.descriptorSet()};
     tracer.pipeline.bind(cmd, sets);
-    constexpr uint32_t kMost = kMostWorkgroups * gpu::kTraceRaysGroup;
-    for (uint32_t done = 0; done < count; done += std::min(count - done, kMost))
+    // As many a lane as leave no lane of the device without one.
+    const uint32_t raysALane = std::clamp(std::bit_floor(count / kLanesToFill), 1u, tracer.raysALane);
+    const uint32_t group = gpu::kTraceRaysGroup * raysALane, most = kMostWorkgroups * group;
+    for (uint32_t done = 0; done < count; done += std::min(count - done, most))
     {
-        const uint32_t some = std::min(count - done, kMost);
-        tracer.pipeline.push(
-            cmd, gpu::TraceRaysPush{rays + done * uint64_t(sizeof(gpu::Ray)), hits + done * uint64_t(sizeof(gpu::RayHit)), some});
-        tracer.gpu->vk.CmdDispatch(cmd, workgroupsInARow(some, gpu::kTraceRaysGroup), 1, 1);
+        const uint32_t some = std::min(count - done, most);
+        tracer.pipeline.push(cmd, gpu::TraceRaysPush{rays + done * uint64_t(sizeof(gpu::Ray)), hits + done * uint64_t(sizeof(gpu::RayHit)),
+                                                     some, raysALane});
+        tracer.gpu->vk.CmdDispatch(cmd, workgroupsInARow(some, group), 1, 1);
     }
 }
 

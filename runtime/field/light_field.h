@@ -67,10 +67,18 @@ struct RayTracer::State
     std::shared_ptr<Gpu> gpu;
     LightField field;
     Pipeline pipeline;
+    uint32_t raysALane; // at most
 };
 
-/// @param shader  SPIR-V of a pass with trace_rays.comp's interface; empty: our tracer. The bench brings its opponents through it.
-Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, Spirv shader = {});
+/// Passes with trace_rays.comp's interface.
+struct RayShaders
+{
+    Spirv plain;
+    Spirv refilled; // with SCONCE_REFILLS; empty: there is none
+};
+
+/// @param shaders  empty: our tracer. The bench brings its opponents through it.
+Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, RayShaders shaders = {});
 
 /// RayTracer::record on buffers of ours, which SCONCE_NAN_SCAN=1 scans after it.
 void recordTrace(const RayTracer& tracer, VkCommandBuffer cmd, const Buffer& rays, const Buffer& hits, uint32_t count);

@@ -80,6 +80,10 @@ template <class Real, bool kCounts = false> struct LightFieldTwin
     {
         return quality.order;
     }
+    bool shortTurns() const
+    {
+        return false;
+    }
     bool onOctahedron() const
     {
         return field.chart == gpu::kChartOctahedral;

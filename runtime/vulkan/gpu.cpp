@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/vulkan/nan_scan.h"
+#include "runtime/vulkan/rays_a_lane.h"
 
 namespace sconce
 {
@@ -87,6 +88,14 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
         return Error{ErrorCode::badArgument,
                      fmt::format("HostVulkan::queueFamily is {} but the device has {} families", host.queueFamily, familyCount)};
     gpu->timestamps = family[host.queueFamily].timestampValidBits > 0;
+    VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+    VkPhysicalDeviceProperties2 more{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
+    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties2>(instanceProc("vkGetPhysicalDeviceProperties2"))(host.physicalDevice, &more);
+    const bool ballots =
+        (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) && (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT);
+    const auto rays = sconce::raysALane(gpu->properties.deviceType, ballots);
+    if (!rays) return rays.error();
+    gpu->raysALane = *rays;
     gpu->pool = std::make_unique<GpuMemory>(gpu->host, gpu->vk);
 
     VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};

@@ -93,6 +93,7 @@ public:
     VulkanFunctions vk;
     VkPhysicalDeviceProperties properties{};
     bool timestamps = false; // the queue counts time
+    uint32_t raysALane = 1;  // of passes over lists that are made from now on, see raysALane()
 
     GpuMemory& memory() { return *pool; }
 

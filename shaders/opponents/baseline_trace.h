@@ -150,69 +150,105 @@ SCONCE_FN bool nextOfLists(SCONCE_INOUT(BaselineChoice) c, vec3 origin, vec3 dir
     return false;
 }
 
-/// One ray, field space, unit direction. distanceReads counts all levels of the maps.
-SCONCE_FN TraceResult baselineTrace(vec3 from, vec3 direction)
+/// Where an opponent's ray stands between two probes.
+struct BaselineWalk
 {
-    // the supplement's rays start a millimetre further on
-    real ahead = kPublished ? real(0.001) / real(field.scale) : real(0.0);
-    vec3 origin = from + ahead * direction;
+    B0Ray ray;
+    BaselineChoice choice;
+    vec3 origin;
+    vec3 direction;
+    real tMax;
+    uint status;
+    uint seenBy; // probe of the last texel that stopped the march
+    int asked;   // probes
+    bool asks;   // whether there is one to ask, choice.probe
+};
+
+/// How far off its origin a ray starts: the supplement's, a millimetre.
+SCONCE_FN real baselineAhead() { return kPublished ? real(0.001) / real(field.scale) : real(0.0); }
+
+/// A ray at its start, world space; one that is not finite, or has no unit direction, asks nobody: a MISS at t = 0.
+SCONCE_FN BaselineWalk beginBaseline(vec3 origin, vec3 direction)
+{
+    BaselineWalk w;
+    w.origin = (origin - vec3(field.origin)) / real(field.scale) + baselineAhead() * direction;
+    w.direction = direction;
+    w.status = kUnknown;
+    w.seenBy = kNoProbe;
+    w.asked = 0;
+    w.ray.direction = direction;
+    w.ray.reads = 0;
+    w.ray.tMin = real(0.0);
+    w.ray.t = real(0.0);
+    w.ray.pixel = vec2(real(0.0), real(0.0));
+    w.ray.word = 0u;
+    w.ray.certain = false;
+    w.ray.nearest = real(0.0);
+    w.ray.before = w.origin;
+    w.ray.probe = kNoProbe;
+    w.ray.relative = w.origin;
+    w.tMax = kPublished ? real(10000.0) / real(field.scale) : fieldExit(w.origin, direction);
+    w.choice = beginChoice(w.origin, direction);
+    w.asks = kFromOctree ? nextOfLists(w.choice, w.origin, direction, w.ray.tMin) : true;
+    if (!canTrace(origin, direction))
+    {
+        w.asks = false;
+        w.status = kMiss;
+        w.tMax = -baselineAhead();
+        w.choice.indexReads = 0;
+    }
+    return w;
+}
+
+/// Asks the next probe.
+SCONCE_FN void askNext(SCONCE_INOUT(BaselineWalk) w)
+{
+    w.ray.probe = w.choice.probe;
+    w.ray.relative = w.origin - vec3(probeHeader(w.ray.probe).centre);
+    w.status = w.ray.tMin < w.tMax ? baselineProbe(w.ray, w.tMax) : kMiss;
+    ++w.asked;
+    w.asks = false;
+    if (w.status == kMiss) return;
+    if (!w.ray.certain) w.seenBy = w.ray.probe;
+    if (w.status == kHit) return;
+    if (kFromOctree) w.asks = nextOfLists(w.choice, w.origin, w.direction, w.ray.tMin);
+    else w.asks = nextOfGrid(w.choice, w.origin + w.ray.tMin * w.direction, w.direction);
+    w.asks = w.asks && w.asked < (kFromOctree ? kListLimit : kBaselineLimit);
+}
+
+/// What a ray has come to. distanceReads counts all levels of the maps.
+SCONCE_FN TraceResult baselineResult(SCONCE_IN(BaselineWalk) w)
+{
     TraceResult result;
     result.confidence = real(0.0); // the opponents have none
-    result.status = kUnknown;
-    result.probe = kNoProbe;
+    result.status = w.status;
+    result.probe = w.ray.probe;
     result.face = -1;
     result.pixel = vec2(real(0.0), real(0.0));
     result.word = 0u;
-    result.handoffs = 0;
-    B0Ray ray;
-    ray.direction = direction;
-    ray.reads = 0;
-    ray.tMin = real(0.0);
-    ray.t = real(0.0);
-    ray.pixel = result.pixel;
-    ray.word = 0u;
-    ray.certain = false;
-    ray.nearest = real(0.0);
-    ray.before = origin;
-    real tMax = kPublished ? real(10000.0) / real(field.scale) : fieldExit(origin, direction);
-    BaselineChoice choice = beginChoice(origin, direction);
-    uint seenBy = kNoProbe; // probe of the last texel that stopped the march
-    bool asked = kFromOctree ? nextOfLists(choice, origin, direction, ray.tMin) : true;
-    for (int i = 0; i < (kFromOctree ? kListLimit : kBaselineLimit) && asked; ++i)
+    result.handoffs = max(w.asked - 1, 0);
+    result.t = baselineAhead() + (w.status == kHit ? w.ray.t : (w.status == kMiss ? w.tMax : w.ray.tMin));
+    if (w.status != kMiss && w.seenBy != kNoProbe) // unknown: the last occluder seen, which the paper takes as hit
     {
-        ray.probe = choice.probe;
-        ray.relative = origin - vec3(probeHeader(ray.probe).centre);
-        result.probe = ray.probe;
-        result.handoffs = i;
-        result.status = ray.tMin < tMax ? baselineProbe(ray, tMax) : kMiss;
-        if (result.status == kMiss) break;
-        if (!ray.certain) seenBy = ray.probe;
-        if (result.status == kHit) break;
-        if (kFromOctree) asked = nextOfLists(choice, origin, direction, ray.tMin);
-        else asked = nextOfGrid(choice, origin + ray.tMin * direction, direction);
-    }
-    result.t = ahead + (result.status == kHit ? ray.t : (result.status == kMiss ? tMax : ray.tMin));
-    if (result.status != kMiss && seenBy != kNoProbe) // unknown: the last occluder seen, which the paper takes as hit
-    {
-        result.probe = seenBy;
+        result.probe = w.seenBy;
         result.face = 0;
-        result.pixel = ray.pixel;
-        result.word = ray.word;
+        result.pixel = w.ray.pixel;
+        result.word = w.ray.word;
     }
-    if (kPublished && result.status != kHit)
+    if (kPublished && w.status != kHit && w.asked > 0)
     {
         // The supplement fills what was not hit, sky included, with what the grid point nearest to the origin sees in that direction.
-        vec3 g = b0GridPoint(origin);
+        vec3 g = b0GridPoint(w.origin);
         ivec3 nearest = ivec3(int(clamp(floor(g.x + real(0.5)), real(0.0), real(field.gridX - 1u))),
                               int(clamp(floor(g.y + real(0.5)), real(0.0), real(field.gridY - 1u))),
                               int(clamp(floor(g.z + real(0.5)), real(0.0), real(field.gridZ - 1u))));
         result.probe = b0ProbeIndex(nearest, 0);
         result.face = 0;
-        result.pixel = octahedralFromDirection(direction) * real(field.faceSize);
+        result.pixel = octahedralFromDirection(w.direction) * real(field.faceSize);
         result.word = 0u;
     }
-    result.distanceReads = ray.reads;
-    result.indexReads = choice.indexReads;
+    result.distanceReads = w.ray.reads;
+    result.indexReads = w.choice.indexReads;
     return result;
 }
 
@@ -232,24 +268,9 @@ SCONCE_FN vec3 baselineRadiance(SCONCE_IN(TraceResult) hit)
            fy * ((real(1.0) - fx) * unpackRadiance(radianceWord(first + uint(n))) + fx * unpackRadiance(radianceWord(first + uint(n) + 1u)));
 }
 
-/// A world-space ray through the light field with the opponent. One that is not finite, or has no unit direction, is a MISS at t = 0.
-SCONCE_FN RayHit baselineQuery(vec3 origin, vec3 direction)
+/// The answer of an opponent's result.
+SCONCE_FN RayHit baselineAnswer(vec3 origin, vec3 direction, SCONCE_IN(TraceResult) r)
 {
-    TraceResult r;
-    if (!canTrace(origin, direction))
-    {
-        r.status = kMiss;
-        r.t = real(0.0);
-        r.probe = kNoProbe;
-        r.face = -1;
-        r.pixel = vec2(real(0.0), real(0.0));
-        r.word = 0u;
-        r.handoffs = 0;
-        r.distanceReads = 0;
-        r.indexReads = 0;
-        r.confidence = real(0.0);
-    }
-    else r = baselineTrace((origin - vec3(field.origin)) / real(field.scale), direction);
     vec3 normal = vec3(real(0.0));
     vec3 radiance = vec3(real(0.0));
     if (r.face >= 0)
@@ -260,4 +281,12 @@ SCONCE_FN RayHit baselineQuery(vec3 origin, vec3 direction)
     RayHit hit = answer(origin, direction, r, normal, radiance);
     if (kPublished && r.face >= 0) hit.radiance = vec3f(radiance); // the fill-in stands for the sky, too
     return hit;
+}
+
+/// A world-space ray through the light field with the opponent.
+SCONCE_FN RayHit baselineQuery(vec3 origin, vec3 direction)
+{
+    BaselineWalk w = beginBaseline(origin, direction);
+    while (w.asks) askNext(w);
+    return baselineAnswer(origin, direction, baselineResult(w));
 }

@@ -368,7 +368,7 @@ SCONCE_FN void handOff(SCONCE_INOUT(RayState) r, real t)
 /// pass texels over: which texels a ray meets, and where it enters and leaves each, is the same number to the bit without them.
 SCONCE_FN void march(SCONCE_INOUT(RayState) r)
 {
-    for (int step = 0; step < kMarchSteps; ++step)
+    for (int step = 0; step < (shortTurns() ? kShortSteps : kMarchSteps); ++step)
     {
         int x = (r.segment.ix >> r.segment.level) << r.segment.level;
         int y = (r.segment.iy >> r.segment.level) << r.segment.level;

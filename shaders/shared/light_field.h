@@ -130,7 +130,7 @@ struct TraceRaysPush
     DeviceAddress rays; // of Ray[count]
     DeviceAddress hits; // of RayHit[count]
     uint count;
-    uint unused;
+    uint raysALane; // of a pass that refills its lanes: rays of a workgroup, over its size
 };
 SCONCE_CHECK_SIZE(TraceRaysPush, 24);
 

@@ -1,6 +1,6 @@
 // The tracer: one ray through the light field. Shared text: GLSL, or C++ inside a struct that names `real` and holds
 // `field` (LightFieldInfo), `quality` (TraceQuality), and defines ProbeHeader probeHeader(uint), uint distanceWord(uint), octreeTexel(),
-// bool readsFarBounds(), int probeOrder(), bool onOctahedron().
+// bool readsFarBounds(), int probeOrder(), bool onOctahedron(), bool shortTurns().
 //
 // What one probe can't tell of a ray (UNKNOWN, face_march.h) is handed to the next probe of the octree's leaf at that point, with the ray
 // re-entered BEFORE the cell that blocked it, so that the next probe misses nothing (Donow 2016, section on back faces).

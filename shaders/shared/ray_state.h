@@ -16,6 +16,7 @@ SCONCE_CONST uint kEventFirst = 1u;     // was behind it from the start in this 
 SCONCE_CONST uint kEventContinued = 2u; // came to it behind it, over a surface that goes on
 
 SCONCE_CONST int kMarchSteps = 16;   // march steps a turn of the state machine, before other lanes' events get their turn
+SCONCE_CONST int kShortSteps = 8;    // the same where a lane whose ray has ended waits for the next one (shortTurns())
 SCONCE_CONST int kMaxSegments = 16;  // pieces of a ray in one probe: 5 faces a line can cross, twice (free ball), and slack for rounding
 
 SCONCE_CONST int kFaceNone = -1;     // the ray ends with the segment

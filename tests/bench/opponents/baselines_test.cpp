@@ -1,6 +1,7 @@
 // The opponents are no straw men: they do what their papers' figures say, and the GPU runs what the CPU does.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
@@ -165,6 +166,28 @@ TEST_P(BaselineOnGpu, AgreesWithTheCpuRayByRay)
         EXPECT_NEAR(glm::distance(vec3(cpu[i].radiance), vec3(hits[i].radiance)), 0.0f, 0.02f);
     }
     EXPECT_LE(different, rays.size() / 50) << "2 %: a normalised direction a step rounds otherwise where a line grazes a texel's corner";
+}
+
+TEST_P(BaselineOnGpu, RefilledLanesAnswerTheSameToTheBit)
+{
+    const auto field = fields().of(GetParam());
+    ASSERT_TRUE(field) << field.error().message;
+    std::vector<gpu::Ray> rays = raysOf(cornellRays(20000), GetParam());
+    for (size_t i = 0; rays.size() < 2 * 65536 + 77; ++i)
+        rays.push_back(rays[i]); // enough for two a lane, in no whole number of workgroups
+    auto device = makeLightField(gpu(), *field);
+    ASSERT_TRUE(device) << device.error().message;
+    const auto tracedBy = [&](uint32_t raysALane)
+    {
+        gpu().raysALane = raysALane;
+        std::vector<gpu::RayHit> hits(rays.size());
+        auto tracer = makeRayTracer(gpu(), *device, traceRaysPass(GetParam()));
+        EXPECT_TRUE(tracer && tracer->trace(rays, hits));
+        return hits;
+    };
+    const auto plain = tracedBy(1), refilled = tracedBy(8);
+    EXPECT_EQ(std::memcmp(refilled.data(), plain.data(), plain.size() * sizeof(gpu::RayHit)), 0);
+    EXPECT_EQ(traceRaysPass(GetParam()).refilled.empty(), GetParam() == Baseline::b0) << "the published one is as it was published";
 }
 
 TEST_P(BaselineOnGpu, OddRaysEndFinite)

@@ -1,4 +1,5 @@
 // The GPU runs the same text as the CPU: the answers must agree ray by ray.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -6,6 +7,7 @@
 
 #include "runtime/field/light_field.h"
 #include "runtime/field/tracer_cpu.h"
+#include "runtime/vulkan/rays_a_lane.h"
 #include "shaders/shared/field_passes.h"
 #include "shaders/shared/pure.h"
 #include "tests/support/cornell_field.h"
@@ -60,6 +62,30 @@ TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
         EXPECT_NEAR(glm::distance(vec3(cpu.normal), vec3(got.normal)), 0.0f, 1e-4f);
     }
     EXPECT_LE(different, rays.size() / 2000) << "0.05 %: rays that graze a texel's corner may round to its other side";
+}
+
+TEST_F(GpuTrace, RefilledLanesAnswerTheSameToTheBit)
+{
+    const FieldData field = litCornell();
+    const RaySet set = cornellRays(20000);
+    auto device = makeLightField(gpu(), field);
+    ASSERT_TRUE(device) << device.error().message;
+    std::vector<gpu::Ray> rays(2 * 65536 + 77); // enough for two a lane, in no whole number of workgroups
+    for (size_t i = 0; i < rays.size(); ++i)
+        rays[i] = {set.origins[i % set.size()], set.directions[i % set.size()], set.normals[i % set.size()]};
+    rays[7].direction = vec3(std::nanf("")); // ends before its first turn
+    const auto tracedBy = [&](uint32_t raysALane)
+    {
+        gpu().raysALane = raysALane;
+        std::vector<gpu::RayHit> hits(rays.size());
+        auto tracer = makeRayTracer(gpu(), *device);
+        EXPECT_TRUE(tracer && tracer->trace(rays, hits));
+        return hits;
+    };
+    const auto plain = tracedBy(1);
+    EXPECT_GT(std::ranges::count(plain, 1u, &gpu::RayHit::status), 90000) << "hits";
+    const auto refilled = tracedBy(kMostRaysALane);
+    EXPECT_EQ(std::memcmp(refilled.data(), plain.data(), plain.size() * sizeof(gpu::RayHit)), 0);
 }
 
 TEST_F(GpuTrace, OddRaysEndFinite)
