@@ -93,6 +93,8 @@ race=("rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-oc
 part race bin/sconce_replay "${race[@]}" --runs 25
 part race_plain env SCONCE_RAYS_A_LANE=1 bin/sconce_replay "${race[@]}" --runs 25
 part race_cold bin/sconce_replay "${race[@]}" --runs 10 --cold 256
+part bake_compact bin/sconce bake "$(scene_of "$judged")" --probes "fields/$judged.probes.json" --resolution 256 --compact --bounces 0 -o "$work/compact.sconce" --no-journal --json --quiet
+part race_compact bin/sconce_replay "rays/$judged.rays" --field ours="fields/$judged.sconce" --field ours="$work/compact.sconce" --timed "$list" --runs 15 --warm-up "$warm" --json
 
 # frames NAME SCENE FIELD OPTIONS...: milliseconds of each pass
 frames() {

@@ -447,6 +447,11 @@ def gpu(arguments):
             row |= {"cold": f"{cold[tracer]['coherent_ms']['mrays_per_s']:.0f}",
                     "ratio_cold": f"{cold[tracer]['coherent_ms']['median'] / cold['b0plus-octree']['coherent_ms']['median']:.2f}"}
         rows[slug(tracer)] = row
+    if parts.get("race_compact", {}).get("result"):
+        texels, compact = parts["race_compact"]["result"]
+        rows["compact"] = {"label": "Sconce, compact maps"} | {
+            key: f"{100 * compact[key]:.2f}" for key in ("right_1", "right_02")} | {
+            f"times_{order}": f"{compact[times]['median'] / texels[times]['median']:.2f}" for order, times in orders.items()}
     for name in parts:  # what a GPU answers otherwise than the processor
         if name.startswith("rays_") and parts[name]["result"]:
             rows[slug(name)] = {"label": name, "rays": str(parts[name]["result"][0]["rays"]), "differs": str(parts[name]["result"][0]["cpu_differs"])}

@@ -46,7 +46,7 @@ def make_kit(kit, sources, command, replay, ray_accuracy, pass_statistics, build
 
 
 def measure(kit, parts=""):
-    environment = os.environ | {"SCONCE_GPU_SIZE": "48x32", "SCONCE_GPU_LARGE": "64x48", "SCONCE_GPU_FRAMES": "1", "SCONCE_GPU_WARM": "0", "SCONCE_GPU_SECONDS": "3000", "SCONCE_GPU_PARTS": parts}
+    environment = os.environ | {"SCONCE_GPU_SIZE": "48x32", "SCONCE_GPU_LARGE": "64x48", "SCONCE_GPU_FRAMES": "1", "SCONCE_GPU_WARM": "0", "SCONCE_GPU_LIST": "4000", "SCONCE_GPU_SECONDS": "3000", "SCONCE_GPU_PARTS": parts}
     environment.pop("SCONCE_VALIDATION", None)  # the kit turns the layer on where it belongs
     done = subprocess.run([str(kit / "run.sh"), str(kit / "gpu.json")], env=environment, capture_output=True, text=True, check=False)
     return done, json.loads((kit / "gpu.json").read_text(encoding="utf-8"))
@@ -60,7 +60,7 @@ def main():
         if done.returncode != 0 or measured["wrong"]:
             sys.exit(f"the kit found {measured['wrong']} wrong, exit {done.returncode}:\n{done.stderr}")
         lacking = {name for name, part in measured["parts"].items() if part["result"] is None}
-        if len(measured["parts"]) < 14 or lacking - FREE:
+        if len(measured["parts"]) < 17 or lacking - FREE:
             sys.exit(f"parts {sorted(measured['parts'])}, without a result: {sorted(lacking)}")
         # Other shares or another picture than were packed are faults, and said to be.
         shares = kit / "expected/cornell-glossy.json"
