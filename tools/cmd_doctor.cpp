@@ -1,7 +1,11 @@
-// sconce doctor: Vulkan devices, their limits, and what they lack.
+// sconce doctor: Vulkan devices, their limits, what they lack, and which form of a pass they get where there are several.
 #include <algorithm>
+#include <cstdlib>
 #include <iostream>
 
+#include <fmt/format.h>
+
+#include "runtime/vulkan/gpu.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "tools/common.h"
 #include "tools/version.h"
@@ -16,12 +20,53 @@ struct NoOptions
 {
 };
 
+/// What passes have several forms of: which a device gets, and why.
+struct BackEnd
+{
+    std::string of, taken, why;
+};
+
+std::vector<BackEnd> backEndsOf(const Gpu& gpu)
+{
+    const bool software = gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    const std::string why = std::getenv("SCONCE_RAYS_A_LANE") ? "SCONCE_RAYS_A_LANE says so"
+                            : gpu.raysALane > 1               ? "in long lists a lane whose ray ends takes the next"
+                            : software                        ? "a processor's lanes work together to the end of the longest ray"
+                                                              : "compute passes have no subgroup ballots";
+    return {
+        {"words of maps", "texel buffers",
+         fmt::format("of up to {} words each; a light field with more is read by address", gpu.properties.limits.maxTexelBufferElements)},
+        {"lists of rays", gpu.raysALane == 1 ? "a ray a lane" : fmt::format("{} rays a lane", gpu.raysALane), why}};
+}
+
+/// @param index  of deviceSummary()
+Result<std::vector<BackEnd>> backEndsOf(size_t index)
+{
+    const auto own = OwnDevice::create({.device = std::to_string(index)});
+    if (!own) return own.error();
+    const auto gpu = Gpu::create(own->host());
+    if (!gpu) return gpu.error();
+    return backEndsOf(**gpu);
+}
+
 int runDoctor(const NoOptions&, const Context& context)
 {
     const Result<std::vector<DeviceSummary>> devices = deviceSummary();
     if (!devices) return fail(devices.error());
+    std::vector<std::vector<BackEnd>> backEnds(devices->size());
+    for (size_t i = 0; i < devices->size(); ++i)
+    {
+        if (!(*devices)[i].missing.empty()) continue;
+        auto found = backEndsOf(i);
+        if (!found) return fail(found.error());
+        backEnds[i] = std::move(*found);
+    }
     Json list = Json::array();
-    for (const DeviceSummary& device : *devices)
+    for (size_t i = 0; i < devices->size(); ++i)
+    {
+        const DeviceSummary& device = (*devices)[i];
+        Json forms = Json::array();
+        for (const BackEnd& one : backEnds[i]) forms.push_back({{"of", one.of}, {"taken", one.taken}, {"why", one.why}});
         list.push_back({{"name", device.name},
                         {"kind", device.kind},
                         {"driver", device.driver},
@@ -33,7 +78,9 @@ int runDoctor(const NoOptions&, const Context& context)
                         {"subgroup_size", device.subgroupSize},
                         {"timestamps", device.timestamps},
                         {"missing", device.missing},
-                        {"usable", device.missing.empty()}});
+                        {"usable", device.missing.empty()},
+                        {"back_ends", forms}});
+    }
     if (context.json)
         print({{"version", versionText()}, {"devices", list}});
     else
@@ -50,6 +97,7 @@ int runDoctor(const NoOptions&, const Context& context)
             std::cout << (device.missing.empty() ? "   can run Sconce\n" : "   lacks:");
             for (const std::string& feature : device.missing) std::cout << " " << feature;
             std::cout << (device.missing.empty() ? "" : "\n");
+            for (const BackEnd& one : backEnds[i]) std::cout << "   " << one.of << ": " << one.taken << " (" << one.why << ")\n";
         }
         std::cout << std::flush;
     }

@@ -269,8 +269,16 @@ TEST(Command, DoctorListsDevices)
     const CommandResult result = sconceCommand({"doctor", "--json"});
     const json report = jsonOf(result);
     bool usable = false;
-    for (const json& device : report.at("devices")) usable = usable || device.at("usable").get<bool>();
+    for (const json& device : report.at("devices"))
+    {
+        usable = usable || device.at("usable").get<bool>();
+        EXPECT_EQ(device.at("back_ends").empty(), !device.at("usable").get<bool>());
+        for (const json& form : device.at("back_ends"))
+            if (form.at("of") == "lists of rays" && device.at("kind") == "software") EXPECT_EQ(form.at("taken"), "a ray a lane");
+    }
     EXPECT_EQ(result.exit, usable ? 0 : 4);
+    const std::string said = sconceCommand({"doctor"}).out;
+    for (const char* form : {"words of maps: texel buffers (", "lists of rays: "}) EXPECT_EQ(said.find(form) != std::string::npos, usable);
 }
 
 TEST(Command, PlaceHonoursPinsAndMemory)
