@@ -13,6 +13,7 @@ most=$((60 * 1000 * 1000)) # bytes of the kit
 made=out/gpu/made kit=out/gpu/sconce-gpu-kit
 tools/build.sh release sconce_command sconce_replay sconce_ray_accuracy sconce_pass_statistics >&2
 build=build/release
+ninja -C "$build" -t cleandead > /dev/null # passes that are no longer in the tree
 sconce=$build/tools/sconce accuracy=$build/bench/race/sconce_ray_accuracy replay=$build/bench/race/sconce_replay
 rm -rf "$kit"
 mkdir -p "$made" "$kit"/{bin,lib,passes,fields,rays,scenes,expected}
