@@ -168,8 +168,17 @@ struct BaselineWalk
 SCONCE_FN real baselineAhead() { return kPublished ? real(0.001) / real(field.scale) : real(0.0); }
 
 /// A ray at its start, world space; one that is not finite, or has no unit direction, asks nobody: a MISS at t = 0.
-SCONCE_FN BaselineWalk beginBaseline(vec3 origin, vec3 direction)
+SCONCE_FN BaselineWalk beginBaseline(vec3 from, vec3 towards)
 {
+    // Nothing is looked up at what is no number.
+    bool can = canTrace(from, towards);
+    vec3 origin = vec3(field.origin);
+    vec3 direction = vec3(real(0.0), real(0.0), real(1.0));
+    if (can)
+    {
+        origin = from;
+        direction = towards;
+    }
     BaselineWalk w;
     w.origin = (origin - vec3(field.origin)) / real(field.scale) + baselineAhead() * direction;
     w.direction = direction;
@@ -190,7 +199,7 @@ SCONCE_FN BaselineWalk beginBaseline(vec3 origin, vec3 direction)
     w.tMax = kPublished ? real(10000.0) / real(field.scale) : fieldExit(w.origin, direction);
     w.choice = beginChoice(w.origin, direction);
     w.asks = kFromOctree ? nextOfLists(w.choice, w.origin, direction, w.ray.tMin) : true;
-    if (!canTrace(origin, direction))
+    if (!can)
     {
         w.asks = false;
         w.status = kMiss;
