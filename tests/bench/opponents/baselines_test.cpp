@@ -173,8 +173,7 @@ TEST_P(BaselineOnGpu, RefilledLanesAnswerTheSameToTheBit)
     const auto field = fields().of(GetParam());
     ASSERT_TRUE(field) << field.error().message;
     std::vector<gpu::Ray> rays = raysOf(cornellRays(20000), GetParam());
-    for (size_t i = 0; rays.size() < 2 * 65536 + 77; ++i)
-        rays.push_back(rays[i]); // enough for two a lane, in no whole number of workgroups
+    for (size_t i = 0; rays.size() < 200'077; ++i) rays.push_back(rays[i]); // enough for two a lane, in no whole number of workgroups
     auto device = makeLightField(gpu(), *field);
     ASSERT_TRUE(device) << device.error().message;
     const auto tracedBy = [&](uint32_t raysALane)

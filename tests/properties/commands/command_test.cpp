@@ -281,6 +281,14 @@ TEST(Command, DoctorListsDevices)
     for (const char* form : {"words of maps: texel buffers (", "lists of rays: "}) EXPECT_EQ(said.find(form) != std::string::npos, usable);
 }
 
+TEST(Command, DoctorListsADeviceThatCannotBeHad)
+{
+    setenv("SCONCE_RAYS_A_LANE", "3", 1);
+    const CommandResult result = sconceCommand({"doctor"});
+    unsetenv("SCONCE_RAYS_A_LANE");
+    EXPECT_NE(result.out.find("any pass: none (SCONCE_RAYS_A_LANE is '3'; give 1, 2, 4, 8 or 16)"), std::string::npos) << result.out;
+}
+
 TEST(Command, PlaceHonoursPinsAndMemory)
 {
     const TestFolder folder;
