@@ -155,7 +155,7 @@ uint32_t lightOf(std::span<const Place> places, float side, Text& text, const Tr
         const Place& place = places[i];
         const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
         if (!got.known) continue;
-        const float weight = std::clamp(got.reach / side, kLeastOpen, 1.0f);
+        const float weight = std::clamp(got.room / side, kLeastOpen, 1.0f);
         sum += weight * (got.straight + got.bounced);
         weights += weight;
         meets = meets || got.meetsSeen;
@@ -216,7 +216,7 @@ std::vector<Place> chosenOf(std::span<const Place> places, float side, const Tri
         if (i >= tried) continue;
         const Place& place = places[i * places.size() / tried];
         const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
-        if (got.known && (got.meetsSeen || got.reach > kTight * side)) chosen.push_back(place);
+        if (got.known && (got.meetsSeen || got.room > kTight * side)) chosen.push_back(place);
     }
     const size_t any = chosen.empty() ? std::min<size_t>(places.size(), kPlacesOfKey) : 0;
     for (size_t i = 0; i < any; ++i) chosen.push_back(places[i * places.size() / any]);

@@ -610,9 +610,10 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
         const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at),
                                        grazingOf(exact->surface.metallic, exact->surface.roughness));
         if (text.knowsTooLittle(got.ends, got.asked)) continue;
-        found[i] = {
-            got.light, text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f), got.variance, got.reach, true, true,
-            false};
+        found[i] = {got.light,    text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
+                    got.variance, got.room,
+                    got.reach,    true,
+                    true,         false};
     }
     return found;
 }
@@ -628,6 +629,7 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
     return {got.light,
             text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
             got.variance,
+            got.room,
             got.reach,
             !text.knowsTooLittle(got.ends, got.asked),
             text.meetsSeen(point, normal, sample, links, grazing),

@@ -63,7 +63,7 @@ public:
     {
         vec3 straight{0.0f}, bounced{0.0f}; // from emitters and sky; all else
         float variance = 0.0f;              // of the luminance of `straight`, by chance
-        float reach = 0.0f;                 // harmonic mean of the rays' lengths, field units
+        float room = 0.0f, reach = 0.0f;    // harmonic mean of the lengths of its rays, of those that end at a surface; field units
         bool known = false;                 // enough of its rays found something
         bool meetsSeen = false;             // some of them a place that a probe sees
         bool enclosed = false;              // none of them the sky

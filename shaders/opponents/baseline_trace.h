@@ -159,7 +159,7 @@ struct BaselineWalk
     vec3 direction;
     real tMax;
     uint status;
-    uint seenBy; // probe of the last texel that stopped the march
+    uint seenBy; // probe of the texel that stopped the march, which a lost ray shows
     int asked;   // probes
     bool asks;   // whether there is one to ask, choice.probe
 };
@@ -212,13 +212,23 @@ SCONCE_FN BaselineWalk beginBaseline(vec3 from, vec3 towards)
 /// Asks the next probe.
 SCONCE_FN void askNext(SCONCE_INOUT(BaselineWalk) w)
 {
+    vec2 pixel = w.ray.pixel;
+    uint word = w.ray.word;
+    real reached = w.ray.tMin;
     w.ray.probe = w.choice.probe;
     w.ray.relative = w.origin - vec3(probeHeader(w.ray.probe).centre);
     w.status = w.ray.tMin < w.tMax ? baselineProbe(w.ray, w.tMax) : kMiss;
     ++w.asked;
     w.asks = false;
     if (w.status == kMiss) return;
-    if (!w.ray.certain) w.seenBy = w.ray.probe;
+    // As our tracer: of probes that bring a ray no further the first tells what a lost one shows.
+    bool further = kPublished || w.status == kHit || w.seenBy == kNoProbe || w.ray.tMin > reached + kProgress * real(field.diagonal);
+    if (!further)
+    {
+        w.ray.pixel = pixel;
+        w.ray.word = word;
+    }
+    else if (!w.ray.certain) w.seenBy = w.ray.probe;
     if (w.status == kHit) return;
     if (kFromOctree) w.asks = nextOfLists(w.choice, w.origin, w.direction, w.ray.tMin);
     else w.asks = nextOfGrid(w.choice, w.origin + w.ray.tMin * w.direction, w.direction);
@@ -237,7 +247,7 @@ SCONCE_FN TraceResult baselineResult(SCONCE_IN(BaselineWalk) w)
     result.word = 0u;
     result.handoffs = max(w.asked - 1, 0);
     result.t = baselineAhead() + (w.status == kHit ? w.ray.t : (w.status == kMiss ? w.tMax : w.ray.tMin));
-    if (w.status != kMiss && w.seenBy != kNoProbe) // unknown: the last occluder seen, which the paper takes as hit
+    if (w.status != kMiss && w.seenBy != kNoProbe) // unknown: an occluder, which the paper takes as hit
     {
         result.probe = w.seenBy;
         result.face = 0;

@@ -14,6 +14,7 @@ SCONCE_CONST real kSegmentEnd = real(0.99999);   // s from which on the rest of 
 SCONCE_CONST real kBeforeBound = real(0.9999);   // share of the way to a cell's bound that is taken: rounding must not overshoot it
 SCONCE_CONST real kLeastCosine = real(0.12); // of a ray to a surfel: at a smaller one the surfel's thickness along the ray would grow without end
 SCONCE_CONST real kThickest = real(8.84);    // 1 / kLeastCosine + 1 / 2, rounded up: a surfel's greatest thickness in footprints
+SCONCE_CONST real kProgress = real(1e-4);    // share of the diagonal that a ray must come on to ask probes again
 SCONCE_CONST real kAtEntry = real(0.25);     // footprints that a surfel may lie before the ray where a probe has just taken it over
 SCONCE_CONST real kDekker = real(4097.0);    // 2^12 + 1: splits the 24 bits of a float into halves
 SCONCE_CONST int kCoarsestCell = 64;         // texels a side of the coarsest level's cells
@@ -358,7 +359,9 @@ SCONCE_FN void handOff(SCONCE_INOUT(RayState) r, real t)
         }
         r.asked.opinionT = kOpinionAsked;
     }
-    rememberSurfel(r, r.segment.s);
+    // What a ray shows that no probe answers: what hid it, of the first probe that brought it so far, for that sees most of the place. From a later
+    // one, which stands out in the open, a sunlit roof may hide a room.
+    if (r.surfel.probe == kNoProbe || t > r.t + kProgress * real(field.diagonal)) rememberSurfel(r, r.segment.s);
     if (r.surfel.event != kEventFirst && t > r.t) r.asked.back = footprint() / (r.segment.q0 + r.segment.s * r.segment.dq);
     r.t = max(r.t, t);
     r.phase = kPhaseChoose;

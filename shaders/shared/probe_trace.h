@@ -30,7 +30,6 @@ SCONCE_CONST int kLookAheads = 3;
 SCONCE_FN real lookAhead(int list) { return list == 0 ? real(0.02) : (list == 1 ? real(0.75) : real(1.75)); }
 SCONCE_CONST real kLookBack = real(-0.02); // voxels: a second opinion is asked of the leaf on the near side of the surface
 
-SCONCE_CONST real kProgress = real(1e-4); // share of the diagonal that a ray must come on to ask probes again
 SCONCE_CONST real kAtStart = real(0.5);   // voxels from its origin within which a ray is at the surface it starts on
 SCONCE_CONST real kFreeShare = real(0.5); // of a probe's free radius: what is skipped, with room for what rounding did to the distances
 SCONCE_CONST real kNearerSquared = real(0.81); // a second opinion comes from at most 0.9 of the distance: else it sees no finer

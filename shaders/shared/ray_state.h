@@ -82,7 +82,7 @@ struct Segment
     uint word;      // that texel
 };
 
-/// The last one that was met, of all probes.
+/// What a hit met, of all probes; of a ray that none has answered yet, what hides it from one of them.
 struct Surfel
 {
     vec2 pixel;  // unmirrored, of `face`

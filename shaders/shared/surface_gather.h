@@ -41,7 +41,8 @@ struct Gathered
     vec3 tilt;     // moment of its luminance along the plane
     Ends ends;     // where the rays ended
     real asked;    // rays that went out
-    real reach;    // harmonic mean of theirs, field units
+    real room;     // harmonic mean of their lengths, field units
+    real reach;    // of those that end at a surface: next to a place the sky is the same
 };
 
 /// Adds the mean over the hemisphere of the radiance that comes straight from emitters: shadow rays to samples drawn by how much they would give
@@ -98,6 +99,7 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel, re
     TangentFrame tangents = tangentFrame(normal);
     vec3 slopes = vec3(real(0.0));
     real nearness = real(0.0);
+    real ended = real(0.0); // rays, at a surface
     real sky = real(0.0);
     vec3 emitted = vec3(real(0.0));
     real squares = real(0.0);
@@ -117,7 +119,11 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel, re
             vec3 met;
             // Another sample's numbers: the same one's would be the direction's, shifted, and what a ray ends at must not hang on where it goes.
             link = endOfRay(point, direction, plane, pairOfRay(pixel, 29u * i + 17u, kLinkStream), t, met);
-            nearness += real(1.0) / max(t, real(1e-6));
+            if (link != kLinkSky)
+            {
+                nearness += real(1.0) / max(t, real(1e-6));
+                ended += real(1.0);
+            }
             real luminous = luminance(met);
             emitted += met;
             squares += luminous * luminous;
@@ -136,7 +142,8 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel, re
     got.variance = max(squares / rays - near * near, real(0.0)) / rays;
     if (luminousSky > real(0.0)) got.variance += luminousSky * luminousSky * varianceOfShare(sky, got.ends.all);
     got.tilt = slopes / rays;
-    got.reach = real(gatherRays()) / max(nearness, real(1e-6));
+    got.room = real(gatherRays()) / max(nearness, real(1e-6));
+    got.reach = max(ended, real(1.0)) / max(nearness, real(1e-6));
     if (lightsHeader.emitterCount > 0u) addEmitters(got, point, normal, plane, pixel, grazing);
     got.light = vec3(field.sky) * (sky / rays) + got.emitters;
     return got;

@@ -108,6 +108,38 @@ TEST(ProbeTrace, CornellIsRight)
     EXPECT_LE(score.distanceReads.mean, 17.0);
 }
 
+// As under the table of town's kitchen, whose floor had mirrored the sun on the roof: what a probe out in the open sees there hides all of
+// the room.
+TEST(ProbeTrace, LostRayShowsWhatHidItInItsRoomNotTheRoof)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t plaster = mesh.material("plaster", vec3(0.5f));
+    mesh.box({-2.0f, 0.0f, -2.0f}, {2.0f, 2.5f, 2.0f}, plaster);  // a room
+    mesh.box({-0.8f, 0.3f, -0.8f}, {0.8f, 0.35f, 0.8f}, plaster); // a table in it
+    mesh.box({8.0f, 0.0f, -1.0f}, {9.0f, 7.0f, 1.0f}, plaster);   // so that the scene goes on outside
+    Traced traced(std::move(scene), std::vector{vec3(0.1f, 1.6f, -0.2f), vec3(0.4f, 6.0f, -0.3f)}, 128);
+    // As where a window lets the probe outside see some of each voxel.
+    const uint16_t marker = uint16_t(traced.field.info.marker), list[] = {0, 1, 0, 0};
+    for (auto texel = traced.field.octree.texels.begin(); texel != traced.field.octree.texels.end(); texel += 4)
+        if (texel[3] != marker) std::ranges::copy(list, texel);
+    twin::LightFieldTwin<float> text(traced.field, defaultQuality());
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> across(-0.5f, 0.5f);
+    int lost = 0, named = 0;
+    for (int i = 0; i < 2000; ++i)
+    {
+        const vec3 origin(across(random), 0.1f, across(random));
+        const auto hit = text.queryRay(origin, randomDirection(random));
+        if (hit.status != 2u) continue;
+        ++lost;
+        named += hit.probe == 0;
+    }
+    RecordProperty("lost", std::to_string(lost));
+    EXPECT_GE(lost, 1500);
+    EXPECT_EQ(named, lost);
+}
+
 TEST(ProbeTrace, ResultDoesNotDependOnTheLevelsUsed)
 {
     const RaySet set = cornellRays(5000);

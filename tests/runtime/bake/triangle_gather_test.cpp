@@ -323,6 +323,35 @@ TEST_F(TriangleGathering, LightFromWhereNoProbeSeesArrives)
     EXPECT_NEAR(alone / together, 1.0, 0.03);
 }
 
+// The foot of a wall before which the sun lights a strip of ground, and nothing else: most rays leave the scene, and tell nothing of how
+// far light is the same. The strip's form factor at a height is Howell's, "A Catalog of Radiation Heat Transfer Configuration Factors", B-5
+// (infinite along).
+TEST_F(TriangleGathering, LightOfAStripOfGroundIsNotBlendedUpTheWall)
+{
+    constexpr float kWide = 0.25f;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.8f), 1.0f);
+    mesh.quad({-6, 0, 0}, {6, 0, 0}, {6, 1.5f, 0}, {-6, 1.5f, 0}, white);
+    mesh.quad({-6, 0, 0}, {6, 0, 0}, {6, 0, kWide}, {-6, 0, kWide}, white);
+    scene.lights.push_back(test::light(LightType::directional, vec3(0.0f), vec3(0.0f, -1.0f, 0.0f), 10.0f));
+    const FieldData field = bake(scene, {vec3(0.1f, 0.7f, 0.5f)}, 1);
+    std::vector<double> ratios;
+    for (const Texel& texel : texelsOf(field, 0))
+    {
+        const float height = texel.position.y;
+        if (std::abs(texel.position.z) > 0.01f || std::abs(texel.position.x) > 1.0f || height < 0.02f || height > 0.6f) continue;
+        ratios.push_back(texel.light.g / (0.5f * (1.0f - height / std::hypot(height, kWide))));
+    }
+    ASSERT_GT(ratios.size(), 100u);
+    const double mean = std::accumulate(ratios.begin(), ratios.end(), 0.0) / double(ratios.size());
+    double squares = 0.0;
+    for (const double ratio : ratios) squares += (ratio / mean - 1.0) * (ratio / mean - 1.0);
+    const double off = std::sqrt(squares / double(ratios.size()));
+    RecordProperty("off", std::to_string(off));
+    EXPECT_LT(off, 0.065); // found: 0.051; blended as far as all rays say, 0.099
+}
+
 TEST_F(TriangleGathering, RaysOfAnotherSceneAndTooManyTexelsAreRefused)
 {
     Scene scene, other;
