@@ -38,6 +38,7 @@ protected:
         settings.effects.temporal = settings.effects.glossy = settings.effects.mirror = settings.effects.rough = false;
     }
 
+    static constexpr float kSameColour = 0.002f; // which cards don't draw to the bit alike all over a surface
     /// The mean of a pixel's finer ones; none where they see more than one surface.
     static std::optional<vec3> meanOfFiner(const RenderedFrame& fine, uint32_t x, uint32_t y)
     {
@@ -46,7 +47,8 @@ protected:
         for (uint32_t i = 0; i < kFiner * kFiner; ++i)
         {
             const size_t at = first + size_t(i / kFiner) * fine.width + i % kFiner;
-            if (glm::dot(fine.normal[at], fine.normal[first]) < 0.9999f || fine.albedo[at] != fine.albedo[first]) return std::nullopt;
+            if (glm::dot(fine.normal[at], fine.normal[first]) < 0.9999f || glm::distance(fine.albedo[at], fine.albedo[first]) > kSameColour)
+                return std::nullopt;
             sum += fine.diffuseIndirect[at] / float(kFiner * kFiner);
         }
         return sum;
