@@ -221,8 +221,9 @@ SCONCE_FN void askNext(SCONCE_INOUT(BaselineWalk) w)
     ++w.asked;
     w.asks = false;
     if (w.status == kMiss) return;
-    // As our tracer: of probes that bring a ray no further the first tells what a lost one shows.
-    bool further = kPublished || w.status == kHit || w.seenBy == kNoProbe || w.ray.tMin > reached + kProgress * real(field.diagonal);
+    // Of lists, as our tracer: of probes that bring a ray no further the first tells what a lost one shows. A grid's later ones are its cell's as well,
+    // and tell more.
+    bool further = !kFromOctree || w.status == kHit || w.seenBy == kNoProbe || w.ray.tMin > reached + kProgress * real(field.diagonal);
     if (!further)
     {
         w.ray.pixel = pixel;
