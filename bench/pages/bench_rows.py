@@ -14,6 +14,7 @@
     bench/pages/paths_table.sh                                  bench/results/field_paths.json
     bench/pages/day_sheet.sh                                    bench/results/day.json
     bench/pages/stream_table.sh                                 bench/results/streaming.json
+    bench/pages/sparse_table.sh                                 bench/results/edges_and_points.json and cached_frames.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
     python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote; notes may follow
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
@@ -548,6 +549,39 @@ def flights(arguments):
            "missing: of the probes that pixels and rays asked for; cut: frames until the error is below a tenth where the flight begins without a map on the device, and the first one's light"], rows)
 
 
+def sparse(arguments):
+    """A scene's rows: light at one pixel of some, by edges and without; and a flight at a ray for 16 pixels."""
+    at, label, speeds = arguments[0], arguments[1], arguments[2].split()
+    found = json.loads(Path(f"{at}.edges.json").read_text())
+    row = {"label": label, "edges": str(found["edges"]), "find_ms": f"{found['find_ms']:.0f}"} | {kind: f"{100 * share:.1f}" for kind, share in found["pixels"].items()}
+    row |= {"flip_whole": f"{found['frame']['smooth_flip']:.4f}", "flip_whole_smoothed": f"{found['frame']['smoothed_flip']:.4f}"}
+    for every in (4, 16, 64):
+        for way, of in found[f"every_{every}"].items():
+            row |= {f"{way}_{every}_samples": f"{100 * of['samples']:.1f}", f"{way}_{every}_relmse": f"{of['relmse']:.4f}", f"{way}_{every}_flip": f"{of['flip']:.4f}",
+                    f"{way}_{every}_flip_smooth": f"{of.get('smoothed_flip', of['smooth_flip']):.4f}"}
+    print(json.dumps({"of": "edges", "key": slug(label.split(",")[0]), "row": row}), flush=True)
+    for speed in speeds:
+        flown = json.loads(Path(f"{at}.{speed}.json").read_text())
+        row = {"label": f"{label}, {speed} m/s"}
+        for way, of in flown["ways"].items():
+            row |= {f"{way}_relmse": f"{of['error']:.4f}", f"{way}_flip": f"{of['flip']:.3f}", f"{way}_ghosts": f"{100 * of['ghosts']:.1f}"}
+            # Light changes in hall alone.
+            row |= {f"{way}_frames": "over 47" if of["frames_to_light"] is None else str(of["frames_to_light"]), f"{way}_ghosts_after": " ".join(f"{100 * of[f'ghosts_after_{i}']:.0f}" for i in (0, 8, 16, 32))} if label.startswith("hall") else {}
+        print(json.dumps({"of": "cached", "key": slug(f"{label.split(',')[0]}_{speed}"), "row": row}), flush=True)
+
+
+def sparses(arguments):
+    lines = [json.loads(line) for line in Path(arguments[0]).read_text().splitlines()]
+    rows = lambda of: {line["key"]: line["row"] for line in lines if line["of"] == of}
+    write("edges_and_points.json", "Pictures whose light is known at one pixel of 4, 16 or 64, between edges of the scene and without them", ["bench/pages/sparse_table.sh"],
+          ["320x180; all light but emission, before the surface's colour; samples: % of the pixels, with those that no sample says anything of; relMSE and FLIP against light at every pixel",
+           "flip_smooth: against the same frame of 16 pixels for each, ways by edges with their edges smoothed; whole: of light at every pixel, without and with smoothed edges",
+           "empty, simple, complex: % of the pixels, by their edges; find_ms: edges of the view and of shadows, on one core"], rows("edges"))
+    write("cached_frames.json", "A flight at a ray from the eye for 16 pixels a frame, by what is kept over frames", ["bench/pages/sparse_table.sh"],
+          ["320x180, 60 frames a second, against all rays of the same frame; ghosts: % of pixels off by over a quarter; temporal: reflections of frames with geometry, against theirs",
+           "hall: half of a lamp's light goes at the middle frame; frames: until the picture's mean is right within 0.05; ghosts_after: at 0, 8, 16 and 32 frames"], rows("cached"))
+
+
 def field_paths(arguments):
     """Of the lines that paths_table.sh prints, and over them least and most."""
     rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
@@ -575,7 +609,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "day": day, "fly": fly, "flights": flights}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "day": day, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """The programs that race tracers, from end to end on one small light field.
 
-race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS FIELD_PATHS FLY_THROUGH SOAK COMMAND
+race_programs.py RAY_ACCURACY REPLAY TESSELLATION LIGHT_RESPONSE PRIMARY_RAYS FIELD_PATHS FLY_THROUGH SOAK EDGES_AND_POINTS CACHED_FRAMES COMMAND
 
 sconce_tessellation cuts and bakes a scene; rays of it that sconce_ray_accuracy records have the same answers from sconce_replay.
 sconce_light_response switches the lamp of a live field. sconce_primary_rays looks into one from two places, sconce_field_paths scatters light through one. sconce_fly_through flies
 through one with room for two of its three probes; sconce_soak draws many frames of it, and of one whose light moves.
+sconce_edges_and_points and sconce_cached_frames draw it from fewer rays than pixels.
 """
 import json
 import pathlib
@@ -32,7 +33,7 @@ def untimed(rows):
 
 
 def main():
-    ray_accuracy, replay, tessellation, light_response, primary_rays, field_paths, fly_through, soak, command = sys.argv[1:]
+    ray_accuracy, replay, tessellation, light_response, primary_rays, field_paths, fly_through, soak, edges_and_points, cached_frames, command = sys.argv[1:]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         probes, rays = folder / "p.json", folder / "r.rays"
@@ -90,6 +91,19 @@ def main():
         expect(len(flown["frames"]) == 12 and flown["most_resident"] == 2 <= flown["read"], f"two probes of three: {flown}")
         expect(flown["cut"]["first_error"] > flown["error"]["median"], f"maps that come change nothing: {flown}")
         expect(flown["light"]["least"] > 0.3 and flown["error"]["median"] < 0.5, f"frames without light: {flown}")
+
+        sparse = json.loads(run(edges_and_points, "cornell-glossy", "--field", lit, "--every", "16,64", "--width", 96, "--height", 72, "-o", folder / "sparse").stdout)
+        expect(abs(sum(sparse["pixels"].values()) - 1) < 1e-9 and 0.8 < sparse["pixels"]["empty"] < 0.99, f"kinds of pixels: {sparse['pixels']}")
+        expect(sparse["frame"]["relmse"] == 0 and sparse["frame"]["smoothed_relmse"] < 0.6 * sparse["frame"]["smooth_relmse"], f"edges smooth nothing: {sparse['frame']}")
+        for every in ("every_16", "every_64"):
+            ways = sparse[every]
+            expect(all(ways[way]["relmse"] < ways["distance"]["relmse"] for way in ("likeness", "edges", "both")), f"edges keep nothing apart: {ways}")
+            expect(0.01 < ways["edges"]["samples"] < 0.25 and (folder / f"sparse.{every[6:]}.both.png").exists(), f"{every}: {ways['edges']}")
+        expect("camera 99" in run(edges_and_points, "cornell-glossy", "--field", lit, "--camera", 99, code=2).stderr, "a camera that isn't there")
+        kept = json.loads(run(cached_frames, "cornell-glossy", "--field", lit, "--frames", 70, "--speed", 0.5, "--width", 48, "--height", 36).stdout)["ways"]
+        expect(len(kept["cache"]["frames"]) == 70 and kept["cache"]["error"] < kept["frameless"]["error"], f"points that move with the camera gain nothing: {kept}")
+        expect(all(abs(way["mean"] - 1) < 0.1 for way in kept.values()), f"a way loses light: {kept}")
+        expect("no light groups" in run(cached_frames, "cornell-glossy", "--field", lit, "--switch", "lamp", code=2).stderr, "a group that isn't there")
 
         lights, live = folder / "l.json", folder / "live.sconce"
         lights.write_text('{"lights":[{"type":"point","position":[0,1.5,0],"intensity":[1,1,1]}]}', encoding="utf-8")
