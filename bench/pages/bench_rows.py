@@ -563,7 +563,8 @@ def sparse(arguments):
     for speed in speeds:
         flown = json.loads(Path(f"{at}.{speed}.json").read_text())
         row = {"label": f"{label}, {speed} m/s"}
-        for way, of in flown["ways"].items():
+        for way, of in (flown["ways"] | flown["reflections"]).items():
+            row |= {f"{way}_rays": f"{100 * of['rays']:.1f}"} if "rays" in of else {}
             row |= {f"{way}_relmse": f"{of['error']:.4f}", f"{way}_flip": f"{of['flip']:.3f}", f"{way}_ghosts": f"{100 * of['ghosts']:.1f}"}
             # Light changes in hall alone.
             row |= {f"{way}_frames": "over 47" if of["frames_to_light"] is None else str(of["frames_to_light"]), f"{way}_ghosts_after": " ".join(f"{100 * of[f'ghosts_after_{i}']:.0f}" for i in (0, 8, 16, 32))} if label.startswith("hall") else {}
@@ -578,7 +579,8 @@ def sparses(arguments):
            "flip_smooth: against the same frame of 16 pixels for each, ways by edges with their edges smoothed; whole: of light at every pixel, without and with smoothed edges",
            "empty, simple, complex: % of the pixels, by their edges; find_ms: edges of the view and of shadows, on one core"], rows("edges"))
     write("cached_frames.json", "A flight at a ray from the eye for 16 pixels a frame, by what is kept over frames", ["bench/pages/sparse_table.sh"],
-          ["320x180, 60 frames a second, against all rays of the same frame; ghosts: % of pixels off by over a quarter; temporal: reflections of frames with geometry, against theirs",
+          ["320x180, 60 frames a second, against all rays of the same frame; ghosts: % of pixels off by over a quarter",
+           "prefiltered, corrected, every, temporal: reflections alone, of frames with geometry, against those of all rays; rays: % of the pixels; corrected: textures of what prefiltered radiance lacks; every: --trace-every 16, temporal: kept, too; both trace what is sharp everywhere",
            "hall: half of a lamp's light goes at the middle frame; frames: until the picture's mean is right within 0.05; ghosts_after: at 0, 8, 16 and 32 frames"], rows("cached"))
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Pictures from fewer rays than pixels, after the papers on sparse sampling: edges and points (sconce_edges_and_points), and a render cache, warps and
-# frameless rendering on a flight (sconce_cached_frames). Prints rows of bench/results/edges_and_points.json and cached_frames.json, and writes both where
+# Pictures from fewer rays than pixels, after the papers on sparse sampling: edges and points (sconce_edges_and_points), and a render cache, warps,
+# frameless rendering and corrective textures on a flight (sconce_cached_frames). Prints rows of bench/results/edges_and_points.json and cached_frames.json, and writes both where
 # no scene is given. sparse_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE, EDGES, CACHED=the command and both programs,
 # built when not given, SPEEDS=m/s ["0.5 2"], RESOLUTION=texels [256], OUT=folder, whose fields are kept [out/sparse].
 set -euo pipefail
@@ -11,7 +11,7 @@ out=${OUT:-out/sparse} resolution=${RESOLUTION:-256} speeds=${SPEEDS:-0.5 2}
 [[ -n ${SCONCE:-} && -n ${EDGES:-} && -n ${CACHED:-} ]] || tools/build.sh release sconce_command sconce_edges_and_points sconce_cached_frames >&2
 sconce=${SCONCE:-build/release/tools/sconce} edges=${EDGES:-build/release/bench/sparse/sconce_edges_and_points} cached=${CACHED:-build/release/bench/sparse/sconce_cached_frames}
 list=("$@")
-[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24 town=64)
+[[ ${#list[@]} -eq 0 ]] && list=(cornell-glossy=8 temple=16 hall=24)
 mkdir -p "$out"
 for entry in "${list[@]}"; do
     scene=${entry%%=*} count=${entry#*=} group=()

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <numeric>
 
 #include <CLI/CLI.hpp>
@@ -20,12 +21,13 @@
 #include "bench/race/tracer_race.h"
 #include "bench/reference/image_io.h"
 #include "bench/reference/metrics.h"
+#include "bench/sparse/corrective_textures.h"
+#include "bench/sparse/drawn_surfaces.h"
 #include "bench/sparse/render_cache.h"
 #include "runtime/field/light_field.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/field/light_groups.h"
 #include "runtime/field/tracer_cpu.h"
-#include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/named_scene.h"
 
@@ -291,36 +293,111 @@ struct World
     }
 };
 
-Result<std::vector<Off>> runTemporal(World& world, const DeviceScene& device, const Options& options, const Flight& flight)
+/// Frames with geometry, whose reflections are what is sparse.
+class Drawn
 {
-    RenderSettings settings;
-    settings.width = options.width, settings.height = options.height;
-    settings.effects = world.field.effectsOfFrames();
-    settings.glossyRays = 4;
-    RenderSettings sparse = settings;
-    sparse.glossyRays = 1, sparse.traceEvery = options.every, sparse.effects.temporal = true;
-    const auto truths = SceneRenderer::create(*world.gpu, device, world.field, settings),
-               drawn = SceneRenderer::create(*world.gpu, device, world.field, sparse);
-    if (!truths) return truths.error();
-    if (!drawn) return drawn.error();
-    std::vector<Off> offs;
-    for (uint32_t i = 0; i < options.frames; ++i)
+public:
+    Drawn(World& of, const Options& asked, const Flight& way) : world(of), options(asked), flight(way), textures(CorrectiveTextures::Desc())
+    {
+    }
+
+    /// Errors by way: prefiltered radiance alone, that corrected by textures, a lattice of rays, and that kept by --temporal.
+    Result<Json> run()
+    {
+        if (Status made = make(); !made) return made.error();
+        for (uint32_t i = 0; i < options.frames; ++i)
+            if (Status drawn = frame(i); !drawn) return drawn.error();
+        Json json;
+        for (const auto& [name, of] : offs)
+        {
+            json[name] = jsonOf(of, options);
+            if (rays.contains(name)) json[name]["rays"] = rays.at(name) / options.frames;
+        }
+        json["corrected"]["bytes"] = textures.bytes();
+        return json;
+    }
+
+private:
+    Status make()
+    {
+        auto made = DeviceScene::create(*world.gpu, world.scene, world.data.info);
+        if (!made) return made.error();
+        device.emplace(std::move(*made));
+        RenderSettings settings;
+        settings.width = options.width, settings.height = options.height;
+        settings.effects = world.field.effectsOfFrames();
+        RenderSettings true_ = settings, cheap = settings, dear = settings, lattice = settings;
+        true_.glossyRays = 4;
+        cheap.raysBelow = 0.0f;
+        dear.effects.denoise = false;
+        lattice.traceEvery = options.every;
+        RenderSettings temporal = lattice;
+        temporal.effects.temporal = true;
+        for (const auto& [name, of] : {std::pair("true", true_), std::pair("prefiltered", cheap), std::pair("dear", dear),
+                                       std::pair("every", lattice), std::pair("temporal", temporal)})
+        {
+            auto renderer = SceneRenderer::create(*world.gpu, *device, world.field, of);
+            if (!renderer) return renderer.error();
+            renderers[name] = std::move(*renderer);
+        }
+        return success();
+    }
+    Status frame(uint32_t i)
     {
         if (i == options.frames / 2 && world.groups)
         {
-            if (Status dimmed = world.dim(options.group, options.weight); !dimmed) return dimmed.error();
-            (*drawn)->lightChanged();
+            if (Status dimmed = world.dim(options.group, options.weight); !dimmed) return dimmed;
+            for (auto& [name, renderer] : renderers) renderer->lightChanged();
         }
         const Camera camera = flight.at(options.speed / kFramesASecond * float(i));
-        const auto frame = (*drawn)->render(camera, i), truth = (*truths)->render(camera, i);
-        if (!frame) return frame.error();
-        if (!truth) return truth.error();
-        const Result<Off> off = offOf(frame->glossyIndirect, truth->glossyIndirect, options, i);
-        if (!off) return off.error();
-        offs.push_back(*off);
+        std::map<std::string, RenderedFrame> frames;
+        for (auto& [name, renderer] : renderers)
+        {
+            auto drawn = renderer->render(camera, i);
+            if (!drawn) return drawn.error();
+            frames[name] = std::move(*drawn);
+        }
+        const std::vector<vec3>& truth = frames["true"].glossyIndirect;
+        for (const char* name : {"prefiltered", "every", "temporal"})
+        {
+            if (Status judged = judge(name, frames[name].glossyIndirect, truth, i); !judged) return judged;
+            const auto traced = std::ranges::count_if(frames[name].counts, [](glm::uvec4 of) { return of.z > 0; });
+            rays[name] += double(traced) / double(truth.size());
+        }
+        return correct(frames, camera, i);
     }
-    return offs;
-}
+    Status correct(std::map<std::string, RenderedFrame>& frames, const Camera& camera, uint32_t i)
+    {
+        const RenderedFrame &cheap = frames["prefiltered"], &dear = frames["dear"];
+        const SurfacePixels pixels = surfacesOf(dear, camera);
+        std::vector<bool> wanted;
+        for (size_t pixel = 0; pixel < dear.roughness.size(); ++pixel)
+            wanted.push_back(dear.normal[pixel] != vec3(0.0f) && dear.counts[pixel].z > 0); // what is traced where all is
+        const std::vector<vec3> picture = textures.correct(pixels, cheap.glossyIndirect, wanted);
+        const std::vector<uint32_t> asked = textures.ask(picture.size() / options.every);
+        std::vector<vec3> differences;
+        for (const uint32_t pixel : asked) differences.push_back(dear.glossyIndirect[pixel] - cheap.glossyIndirect[pixel]);
+        textures.add(pixels, asked, differences);
+        rays["corrected"] += double(asked.size()) / double(picture.size());
+        return judge("corrected", picture, frames["true"].glossyIndirect, i);
+    }
+    Status judge(const std::string& name, std::span<const vec3> drawn, std::span<const vec3> truth, uint32_t frame)
+    {
+        const Result<Off> off = offOf(drawn, truth, options, frame);
+        if (!off) return off.error();
+        offs[name].push_back(*off);
+        return success();
+    }
+
+    World& world;
+    const Options& options;
+    const Flight& flight;
+    CorrectiveTextures textures;
+    std::optional<DeviceScene> device;
+    std::map<std::string, std::unique_ptr<SceneRenderer>> renderers;
+    std::map<std::string, std::vector<Off>> offs;
+    std::map<std::string, double> rays; // a pixel, of all frames
+};
 
 Status writePictures(const Options& options, const std::string& way, std::span<const vec3> drawn, std::span<const vec3> truth)
 {
@@ -385,11 +462,9 @@ Status run(const Options& options)
     for (size_t way = 0; way < ways.size(); ++way) printed["ways"][ways[way].first] = jsonOf(offs[way], options);
     if (world.groups)
         if (Status dimmed = world.dim(options.group, 1.0f); !dimmed) return dimmed;
-    const auto device = DeviceScene::create(**gpu, world.scene, world.data.info);
-    if (!device) return device.error();
-    const auto temporal = runTemporal(world, *device, options, flight);
-    if (!temporal) return temporal.error();
-    printed["ways"]["temporal"] = jsonOf(*temporal, options);
+    auto drawn = Drawn(world, options, flight).run();
+    if (!drawn) return drawn.error();
+    printed["reflections"] = std::move(*drawn);
     std::cout << printed.dump(1) << std::endl;
     return success();
 }

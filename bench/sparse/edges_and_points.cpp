@@ -15,9 +15,8 @@
 #include "bench/race/tracer_race.h"
 #include "bench/reference/image_io.h"
 #include "bench/reference/metrics.h"
-#include "bench/sparse/sparse_fill.h"
+#include "bench/sparse/drawn_surfaces.h"
 #include "runtime/field/light_field_file.h"
-#include "runtime/scene/scene_renderer.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/named_scene.h"
 
@@ -90,16 +89,12 @@ std::vector<bool> shiningPixels(const RayScene& rays, const Camera& camera, uint
     return shines;
 }
 
+/// What shines shows no surface.
 SurfacePixels surfacesOf(const RenderedFrame& frame, const Camera& camera, const std::vector<bool>& shines)
 {
-    SurfacePixels pixels{frame.width, frame.height, camera.eye, {}, frame.normal, frame.roughness};
-    const Pinhole pinhole(camera, frame.width, frame.height);
-    for (size_t i = 0; i < frame.depth.size(); ++i)
-    {
+    SurfacePixels pixels = surfacesOf(frame, camera);
+    for (size_t i = 0; i < shines.size(); ++i)
         if (shines[i]) pixels.normal[i] = vec3(0.0f);
-        const vec3 way = pinhole.direction(float(i % frame.width) + 0.5f, float(i / frame.width) + 0.5f, frame.width, frame.height);
-        pixels.position.push_back(camera.eye + way * (frame.depth[i] / glm::dot(way, pinhole.forward)));
-    }
     return pixels;
 }
 

@@ -141,41 +141,6 @@ size_t RenderCache::holes() const
     return size_t(std::ranges::count(nearest, kNone));
 }
 
-std::vector<uint32_t> RenderCache::ask(size_t budget)
-{
-    double sum = 0.0;
-    for (const float wish : priority) sum += double(wish);
-    const float scale = float(double(budget) / std::max(sum, 1e-9));
-    std::vector<uint32_t> asked;
-    std::vector<float> row(desc.width, 0.0f), below(desc.width, 0.0f);
-    for (uint32_t y = 0; y < desc.height; ++y)
-    {
-        std::ranges::fill(below, 0.0f);
-        for (uint32_t i = 0; i < desc.width; ++i)
-        {
-            const int step = y % 2 == 0 ? 1 : -1; // there and back, so that the error doesn't drift to one side
-            const auto x = int(y % 2 == 0 ? i : desc.width - 1 - i);
-            const size_t pixel = size_t(y) * desc.width + size_t(x);
-            float wish = std::min(scale * priority[pixel], 1.0f) + row[size_t(x)];
-            if (wish >= 0.5f)
-            {
-                if (asked.size() < budget) asked.push_back(uint32_t(pixel));
-                wish -= 1.0f;
-            }
-            const auto give = [&](std::vector<float>& to, int at, float share)
-            {
-                if (at >= 0 && at < int(desc.width)) to[size_t(at)] += share * wish;
-            };
-            give(row, x + step, 7.0f / 16.0f);
-            give(below, x - step, 3.0f / 16.0f);
-            give(below, x, 5.0f / 16.0f);
-            give(below, x + step, 1.0f / 16.0f);
-        }
-        std::swap(row, below);
-    }
-    return asked;
-}
-
 size_t RenderCache::oldSlot()
 {
     size_t oldest = hand;

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "bench/sparse/sample_choice.h"
 #include "scene/view_rays.h"
 
 namespace sconce
@@ -38,9 +39,8 @@ public:
     std::span<const vec3> picture() const { return shown; }
     /// Pixels without a point of their own, of the last projection.
     size_t holes() const;
-    /// The pixels to shade next, at most `budget` of them, the more of them where none is known or what is known is old: by error diffusion
-    /// over the picture of priorities (Floyd and Steinberg 1976).
-    std::vector<uint32_t> ask(size_t budget);
+    /// The pixels to shade next, at most `budget` of them, the more of them where none is known or what is known is old.
+    std::vector<uint32_t> ask(size_t budget) const { return chooseSamples(priority, desc.width, budget); }
     /// Takes in what was asked for, of the camera that project() had. A new point takes the place of the one that its pixel showed, else of
     /// an old one.
     void add(std::span<const uint32_t> pixels, std::span<const Point> samples);

@@ -100,9 +100,12 @@ def main():
             expect(all(ways[way]["relmse"] < ways["distance"]["relmse"] for way in ("likeness", "edges", "both")), f"edges keep nothing apart: {ways}")
             expect(0.01 < ways["edges"]["samples"] < 0.25 and (folder / f"sparse.{every[6:]}.both.png").exists(), f"{every}: {ways['edges']}")
         expect("camera 99" in run(edges_and_points, "cornell-glossy", "--field", lit, "--camera", 99, code=2).stderr, "a camera that isn't there")
-        kept = json.loads(run(cached_frames, "cornell-glossy", "--field", lit, "--frames", 70, "--speed", 0.5, "--width", 48, "--height", 36).stdout)["ways"]
+        kept = json.loads(run(cached_frames, "cornell-glossy", "--field", lit, "--frames", 70, "--speed", 0.5, "--width", 48, "--height", 36).stdout)
+        sharp, kept = kept["reflections"], kept["ways"]
         expect(len(kept["cache"]["frames"]) == 70 and kept["cache"]["error"] < kept["frameless"]["error"], f"points that move with the camera gain nothing: {kept}")
         expect(all(abs(way["mean"] - 1) < 0.1 for way in kept.values()), f"a way loses light: {kept}")
+        expect(0 < sharp["corrected"]["rays"] <= 1 / 16 and sharp["prefiltered"]["rays"] == 0 < sharp["every"]["rays"], f"rays of reflections: {sharp}")
+        expect(sharp["every"]["error"] < sharp["prefiltered"]["error"], f"rays are no better than prefiltered radiance: {sharp}")
         expect("no light groups" in run(cached_frames, "cornell-glossy", "--field", lit, "--switch", "lamp", code=2).stderr, "a group that isn't there")
 
         lights, live = folder / "l.json", folder / "live.sconce"
