@@ -106,6 +106,13 @@ private:
     std::shared_ptr<State> shared;
 };
 
+/// A frame's view whose camera, now and before, is in a world of the host's own, with other axes, of the other hand or in other units, as
+/// the field has it. The G-buffer's normals stay in the host's world: passes turn them. Other lengths are in metres as they were.
+/// @param fieldFromHost  turns, mirrors, moves and scales alike in all directions: of a left-handed world with z up in centimetres, as
+///                       Unreal's is, that takes (x, y, z) to 0.01 (x, z, y)
+/// Errors: badArgument (a matrix that does more).
+Result<gpu::FrameView> inFieldsWorld(gpu::FrameView view, const mat4& fieldFromHost);
+
 /// Worlds larger than memory: keeps those maps of a light field on the device that frames ask for, of a field that was loaded with room for
 /// some. Passes note which probes they would read; a thread reads these from the file, those asked for most first, and record() copies
 /// what it has read to where the maps are that are asked for least, or not at all and are the farthest from the eye. Where a probe's maps

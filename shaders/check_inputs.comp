@@ -84,7 +84,7 @@ vec3 normalBy(uint meaning, InputGuess g, vec3 read)
         return read.x * right + read.y * up + (meaning == kNormalOfView ? read.z : -read.z) * back;
     }
     vec3 world = meaning == kNormalPacked ? 2.0 * read - 1.0 : meaning == kNormalInward ? -read : read;
-    return mat3(g.turn) * world;
+    return mat3(g.turn) * (frame.fieldFromNormals * world);
 }
 
 float decoded(float c) { return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4); }

@@ -36,7 +36,7 @@ Pixel readPixel(ivec2 at)
     float size = depth + dot(abs(normal), vec4(1.0)) + dot(abs(base), vec4(1.0));
     p.surface = depth > 0.0 && size < 1e3 && dot(normal.xyz, normal.xyz) > 0.25;
     p.view = normalize(frame.eye - p.position);
-    p.normal = normal.xyz;
+    p.normal = frame.fieldFromNormals * normal.xyz;
     p.brdf.baseColor = base.rgb;
     p.brdf.metallic = base.a;
     p.brdf.roughness = normal.w;

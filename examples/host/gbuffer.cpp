@@ -20,9 +20,8 @@ struct Push
     float roughness;
     float normalScale;
     float alphaCutoff;
-    float turnZ;
 };
-static_assert(sizeof(Push) == 124); // 128 is what every device has
+static_assert(sizeof(Push) == 120); // 128 is what every device has
 
 } // namespace
 
@@ -64,7 +63,6 @@ void GBuffer::record(vk::CommandBuffer cmd, const Camera& camera, Convention con
     Push push{};
     push.clipFromWorld = clipFromWorld(camera, convention, double(depth.size.width) / depth.size.height);
     push.eye = camera.eye;
-    push.turnZ = convention.axes().z;
     for (const Part& part : scene.model().parts)
     {
         const Material& material = scene.model().materials[part.material];

@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "gbuffer_push.glsl"
 
-// What Sconce reads of a pixel, and its emission. Normals are turned to the viewer's side, and are written in glTF's world, which is the light
-// field's: a left-handed host turns their z.
+// What Sconce reads of a pixel, and its emission. Normals are turned to the viewer's side, in this host's world.
 layout(location = 0) in vec3 fromEye;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
@@ -46,7 +45,7 @@ void main()
     if (dot(flat_, view) < 0.0) flat_ = -flat_;
     if (dot(smoothed, flat_) < 0.0) shading = -shading;
     if (dot(shading, view) <= 0.0) shading = flat_; // interpolated or bent away from the eye
-    outNormalRoughness = vec4(shading * vec3(1.0, 1.0, turnZ), roughness * data.g);
+    outNormalRoughness = vec4(shading, roughness * data.g);
     outBaseColorMetallic = vec4(color.rgb, metallic * data.b);
     outEmission = vec4(emitted, 1.0);
 }

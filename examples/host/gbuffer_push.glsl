@@ -1,7 +1,7 @@
 #extension GL_EXT_scalar_block_layout : require
 layout(scalar, push_constant) uniform Push
 {
-    mat4 clipFromWorld; // the host's world, as are all positions and normals but those that are written
+    mat4 clipFromWorld;
     vec4 baseColor;     // these factors are multiplied by their textures
     vec3 emission;
     float metallic;
@@ -9,5 +9,4 @@ layout(scalar, push_constant) uniform Push
     float roughness;
     float normalScale;
     float alphaCutoff; // 0: opaque
-    float turnZ;       // -1 where the host's world is left-handed
 };

@@ -16,7 +16,6 @@ layout(scalar, set = 0, binding = 0) uniform Block
     vec3 toSun;
     uint made; // terms of indirect light
     vec3 sunIrradiance;
-    float turnZ; // -1 where this world is left-handed: the G-buffer's normals are in the light field's
     vec3 sky;
 };
 layout(set = 0, binding = 1) uniform texture2D depths;
@@ -50,7 +49,7 @@ void main()
         vec4 world = worldFromClip * vec4((vec2(at) + 0.5) / vec2(size) * 2.0 - 1.0, depth, 1.0);
         vec3 point = world.xyz / world.w, view = normalize(eye - point);
         vec4 normalRoughness = texelFetch(normalsRoughness, at, 0), base = texelFetch(baseColorsMetallic, at, 0);
-        vec3 normal = normalRoughness.xyz * vec3(1.0, 1.0, turnZ);
+        vec3 normal = normalRoughness.xyz;
         BrdfSurface surface = BrdfSurface(base.rgb, base.a, normalRoughness.w);
         float nv = dot(normal, view);
         // The library's reflection model, so that a surface answers the sun as it answers all other light.

@@ -17,7 +17,6 @@ struct Block
     glm::vec3 toSun;
     uint32_t made;
     glm::vec3 sunIrradiance;
-    float turnZ;
     glm::vec3 sky;
 };
 
@@ -106,7 +105,6 @@ void Lighting::record(vk::CommandBuffer cmd, const Camera& camera, Convention co
     values.toSun = -sun.along;
     values.made = indirect.made;
     values.sunIrradiance = sun.irradiance;
-    values.turnZ = convention.axes().z;
     values.sky = indirect.sky;
     wait(Stage::eComputeShader, Access::eNone, Stage::eAllTransfer, Access::eTransferWrite); // the frame before reads its own block
     cmd.updateBuffer<Block>(*block.buffer, 0, values);

@@ -42,20 +42,18 @@ SconceGi::SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem
 
 void SconceGi::record(VkCommandBuffer cmd, const Camera& camera, Convention convention, uint32_t seed)
 {
-    // The light field's world is glTF's. A host whose own is another turns the camera here, and its normals where it writes them.
-    const glm::vec3 axes = convention.axes();
-    const glm::dmat4 turned = glm::scale(glm::dmat4(1.0), glm::dvec3(axes));
-    const auto clipFromField = [&](const Camera& c) { return clipFromWorld(c, convention, double(size.width) / size.height) * turned; };
-    view = field->frameView(size.width, size.height);
-    view.worldFromClip = glm::inverse(clipFromField(camera));
-    view.eye = axes * camera.eye;
-    view.seed = seed;
+    const auto clipFrom = [&](const Camera& c) { return clipFromWorld(c, convention, double(size.width) / size.height); };
+    sconce::gpu::FrameView own = field->frameView(size.width, size.height); // in this host's world, as its normals are
+    own.worldFromClip = glm::inverse(clipFrom(camera));
+    own.eye = camera.eye;
+    own.seed = seed;
     if (before)
     {
-        view.follows = 1;
-        view.eyeBefore = axes * before->eye;
-        view.clipFromWorldBefore = clipFromField(*before);
+        own.follows = 1;
+        own.eyeBefore = before->eye;
+        own.clipFromWorldBefore = clipFrom(*before);
     }
+    view = valueOf(sconce::inFieldsWorld(own, glm::scale(glm::mat4(1.0f), convention.axes()))); // the field's world is glTF's
     before = camera;
     light->record(cmd, view);
 }

@@ -4,9 +4,11 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_access.hpp>
 
 #include "runtime/vulkan/nan_scan.h"
 #include "shaders/shared/field_passes.h"
@@ -339,6 +341,29 @@ gpu::FrameView LightField::frameView(uint32_t width, uint32_t height) const
     view.glossyRays = knobs::glossyRays.value;
     view.raysBelow = knobs::raysBelow.value;
     view.normalOffset = knobs::normalOffset.value * info().diagonal * info().scale;
+    view.fieldFromNormals = glm::mat3(1.0f);
+    return view;
+}
+
+Result<gpu::FrameView> inFieldsWorld(gpu::FrameView view, const mat4& fieldFromHost)
+{
+    constexpr float kEqual = 1e-3f; // relative, of lengths and angles
+    const glm::mat3 axes(fieldFromHost);
+    const float scale = std::cbrt(std::abs(glm::determinant(axes)));
+    const glm::mat3 squared = glm::transpose(axes) * axes;
+    bool same = scale > 0.0f && scale < 1e30f && glm::row(fieldFromHost, 3) == vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) same = same && std::abs(squared[i][j] / (scale * scale) - (i == j ? 1.0f : 0.0f)) <= kEqual;
+    if (!same)
+        return Error{ErrorCode::badArgument,
+                     "A world can be turned, mirrored, moved and scaled to a light field's, alike in all directions; "
+                     "give inFieldsWorld() a matrix that does no more"};
+    const auto moved = [&](vec3 place) { return vec3(fieldFromHost * vec4(place, 1.0f)); };
+    view.worldFromClip = fieldFromHost * view.worldFromClip;
+    view.eye = moved(view.eye);
+    view.eyeBefore = moved(view.eyeBefore);
+    view.clipFromWorldBefore = view.clipFromWorldBefore * glm::inverse(fieldFromHost);
+    view.fieldFromNormals = axes / scale;
     return view;
 }
 

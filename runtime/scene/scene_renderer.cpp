@@ -343,6 +343,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     const gpu::LightFieldInfo& space = field.info();
     const CameraBasis basis = basisOf(camera, settings.width, settings.height);
     gpu::FrameView view{};
+    view.fieldFromNormals = glm::mat3(1.0f);
     view.worldFromClip = worldFromClip(camera, basis, space);
     view.eye = camera.eye;
     view.seed = seed;

@@ -18,8 +18,9 @@ struct FrameView
                          // a history counts for at most so many frames, since light has changed: see kFollowsChange
     vec3 eyeBefore;      // of the frame before, world, metres
     mat4 clipFromWorldBefore; // x and y in [-1,1] over the picture before, w > 0 in front of the camera
+    mat3 fieldFromNormals; // turns the G-buffer's normals into the field's world; the identity where they are in it. See inFieldsWorld()
 };
-SCONCE_CHECK_SIZE(FrameView, 180);
+SCONCE_CHECK_SIZE(FrameView, 216);
 
 const uint kFollowsChange = 3u; // for kChangeFrames frames after light has changed: what was before has then faded to (2/3)^8 = 4 %
 const uint kChangeFrames = 8u;

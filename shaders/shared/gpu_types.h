@@ -21,6 +21,7 @@ using uint = std::uint32_t;
 using glm::ivec2;
 using glm::ivec3;
 using glm::ivec4;
+using glm::mat3;
 using glm::mat4;
 using glm::uvec2;
 using glm::uvec3;

@@ -251,5 +251,41 @@ TEST_F(InputCheckTest, EachMistakeIsNamedAndNoneWhereThereIsNone)
     EXPECT_EQ(missing.error().code, ErrorCode::badArgument);
 }
 
+TEST_F(InputCheckTest, AHostsOwnWorldIsRightOnceItsViewIsTurned)
+{
+    mat4 moved = rows({0.6f, 0.0f, -0.8f}, {0.0f, 1.0f, 0.0f}, {0.8f, 0.0f, 0.6f});
+    moved[3] = vec4(3.0f, -2.0f, 5.0f, 1.0f);
+    mat4 centimetres = 100.0f * rows({1, 0, 0}, {0, 0, 1}, {0, 1, 0}); // z up, left-handed
+    centimetres[3][3] = 1.0f;
+    for (const mat4& hostFromField : {rows({1, 0, 0}, {0, 1, 0}, {0, 0, -1}), centimetres, moved})
+    {
+        Frame frame = right;
+        inWorld(hostFromField)(frame);
+        const auto wrong = check(frame);
+        ASSERT_TRUE(wrong.ok()) << wrong.error().message;
+        EXPECT_FALSE(wrong->empty());
+        const auto turned = inFieldsWorld(frame.view, glm::inverse(hostFromField));
+        ASSERT_TRUE(turned.ok()) << turned.error().message;
+        frame.view = *turned;
+        const auto found = check(frame);
+        ASSERT_TRUE(found.ok()) << found.error().message;
+        EXPECT_EQ(*found, std::vector<std::string>());
+    }
+}
+
+TEST_F(InputCheckTest, AWorldThatIsStretchedIsNoWorld)
+{
+    mat4 stretched(1.0f), sheared(1.0f), projected(1.0f);
+    stretched[1][1] = 2.0f;
+    sheared[1][0] = 0.3f;
+    projected[2][3] = 1.0f;
+    for (const mat4& matrix : {stretched, sheared, projected, mat4(0.0f), mat4(std::nanf(""))})
+    {
+        const auto turned = inFieldsWorld(right.view, matrix);
+        ASSERT_FALSE(turned.ok());
+        EXPECT_EQ(turned.error().code, ErrorCode::badArgument);
+    }
+}
+
 } // namespace
 } // namespace sconce
