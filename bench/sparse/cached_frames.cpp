@@ -19,10 +19,9 @@
 #include "base/random.h"
 #include "bench/race/flight.h"
 #include "bench/race/tracer_race.h"
-#include "bench/reference/image_io.h"
 #include "bench/reference/metrics.h"
 #include "bench/sparse/corrective_textures.h"
-#include "bench/sparse/drawn_surfaces.h"
+#include "bench/sparse/pictures.h"
 #include "bench/sparse/render_cache.h"
 #include "runtime/field/light_field.h"
 #include "runtime/field/light_field_file.h"
@@ -205,15 +204,6 @@ struct Off
     std::optional<double> flip; // of some frames
 };
 
-ImageSet pictureOf(std::span<const vec3> colours, const Options& options)
-{
-    ImageSet images;
-    images.width = options.width;
-    images.height = options.height;
-    std::copy_n(&colours[0].x, 3 * colours.size(), images.add("beauty", 3).pixels.begin());
-    return images;
-}
-
 Result<Off> offOf(std::span<const vec3> drawn, std::span<const vec3> truth, const Options& options, uint32_t frame)
 {
     const auto values = [](std::span<const vec3> of) { return std::span<const float>(&of[0].x, 3 * of.size()); };
@@ -222,7 +212,8 @@ Result<Off> offOf(std::span<const vec3> drawn, std::span<const vec3> truth, cons
     {
         CompareSettings settings;
         settings.mse = settings.relMse = settings.psnr = settings.mean = false;
-        const auto compared = compareImages(pictureOf(drawn, options), pictureOf(truth, options), settings);
+        const auto compared =
+            compareImages(pictureOf(drawn, options.width, options.height), pictureOf(truth, options.width, options.height), settings);
         if (!compared) return compared.error();
         off.flip = compared->flip;
     }
@@ -401,7 +392,7 @@ private:
 
 Status writePictures(const Options& options, const std::string& way, std::span<const vec3> drawn, std::span<const vec3> truth)
 {
-    const ImageSet own = pictureOf(drawn, options), reference = pictureOf(truth, options);
+    const ImageSet own = pictureOf(drawn, options.width, options.height), reference = pictureOf(truth, options.width, options.height);
     const auto result = compareImages(own, reference);
     if (!result) return result.error();
     return writeSideBySide(own, reference, {}, *result, options.output + "." + way + ".png");

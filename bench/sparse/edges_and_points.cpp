@@ -13,9 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/race/tracer_race.h"
-#include "bench/reference/image_io.h"
 #include "bench/reference/metrics.h"
-#include "bench/sparse/drawn_surfaces.h"
+#include "bench/sparse/pictures.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/vulkan/host_vulkan.h"
 #include "scene/named_scene.h"
@@ -41,16 +40,6 @@ struct Options
 double millisecondsSince(std::chrono::steady_clock::time_point then)
 {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - then).count();
-}
-
-ImageSet pictureOf(std::span<const vec3> colours, uint32_t width, uint32_t height)
-{
-    ImageSet images;
-    images.width = width, images.height = height;
-    Layer& layer = images.add("beauty", 3);
-    for (size_t i = 0; i < colours.size(); ++i)
-        for (int c = 0; c < 3; ++c) layer.pixels[3 * i + size_t(c)] = colours[i][c];
-    return images;
 }
 
 /// A frame taken apart: light before the surface's colour, and what doesn't come of light, or shines by itself.

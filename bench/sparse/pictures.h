@@ -1,10 +1,24 @@
 #pragma once
 
+#include <algorithm>
+#include <span>
+
+#include "bench/reference/image_io.h"
 #include "bench/sparse/sparse_fill.h"
 #include "runtime/scene/scene_renderer.h"
 
 namespace sconce
 {
+
+/// Colours as a picture's layer `beauty`.
+inline ImageSet pictureOf(std::span<const vec3> colours, uint32_t width, uint32_t height)
+{
+    ImageSet images;
+    images.width = width;
+    images.height = height;
+    std::copy_n(&colours[0].x, 3 * colours.size(), images.add("beauty", 3).pixels.begin());
+    return images;
+}
 
 /// What a drawn frame shows where.
 inline SurfacePixels surfacesOf(const RenderedFrame& frame, const Camera& camera)
