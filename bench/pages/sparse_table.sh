@@ -17,7 +17,7 @@ for entry in "${list[@]}"; do
     scene=${entry%%=*} count=${entry#*=} group=()
     name=$(basename "${scene%.gl*}")
     [[ -f $scenes/$scene ]] && scene=$scenes/$scene
-    [[ $name != hall ]] || group=(lamp "lamp=warm panel") # a third of its light goes out
+    [[ $name != hall ]] || group=(lamp "lamp=warm panel") # nearly all of its light is that one
     at=$out/$name
     [[ -f $at.probes.json ]] || "$sconce" place "$scene" --count "$count" -o "$at.probes.json" --quiet > /dev/null
     [[ -f $at.sconce ]] || "$sconce" bake "$scene" --probes "$at.probes.json" --resolution "$resolution" ${group:+--group "${group[1]}"} -o "$at.sconce" --quiet > /dev/null

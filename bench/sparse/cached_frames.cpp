@@ -4,8 +4,9 @@
 // The picture is what a light field's probes saw, a ray a pixel; each way has one ray for every N pixels a frame. Ways: the render cache
 // (Walter et al. 1999); a post-render warp, whose whole frames take N of those that are shown (Mark, McMillan, Bishop 1997); frameless,
 // pixels in random order without a change of their place (Bishop et al. 1994); whole frames one after the other; and a lattice of this
-// frame's rays, nothing kept. Beside them frames with geometry whose reflections are kept by --temporal, with a ray for N pixels, too,
-// against themselves with all rays. Prints JSON on stdout: errors frame by frame, and those before and after the switch.
+// frame's rays, nothing kept. Beside them reflections of frames with geometry, against their own with all rays: prefiltered radiance, the
+// same with corrective textures (Stamminger et al. 2000) by a ray for N pixels, frames with --trace-every N, and those with --temporal,
+// too, which both trace what is sharp at all pixels. Prints JSON on stdout: errors frame by frame, and those before and after the switch.
 #include <algorithm>
 #include <cmath>
 #include <iostream>

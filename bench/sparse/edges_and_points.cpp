@@ -1,6 +1,6 @@
 // Pictures from light at one pixel of some: between edges found in the scene, against weights by what the G-buffer shows, as frames have
 // them, and by distance alone.
-//   sconce_edges_and_points SCENE --field FILE.sconce [--camera NAME|--eye X,Y,Z --target X,Y,Z] [--every N,...] [--width N] [--height N]
+//   sconce_edges_and_points SCENE --field FILE.sconce [--camera N|--eye X,Y,Z --target X,Y,Z] [--every N,...] [--width N] [--height N]
 //     [-o PREFIX]
 // All light but emission is what is sparse, as light before the surface's colour. Edges are silhouettes, sharp edges, borders of materials
 // and of hard shadows (Bala, Walter, Greenberg 2003, "Combining Edges and Points for Interactive High-Quality Rendering"). Errors are
@@ -17,6 +17,7 @@
 #include "bench/sparse/pictures.h"
 #include "runtime/field/light_field_file.h"
 #include "runtime/vulkan/host_vulkan.h"
+#include "scene/camera_check.h"
 #include "scene/named_scene.h"
 
 namespace sconce
@@ -184,6 +185,7 @@ Result<Camera> cameraOf(const Scene& scene, const Options& options)
     Camera camera;
     camera.eye = {options.eye[0], options.eye[1], options.eye[2]};
     camera.forward = glm::normalize(vec3(options.target[0], options.target[1], options.target[2]) - camera.eye);
+    if (const std::string fault = cameraFault(camera); !fault.empty()) return Error{ErrorCode::badArgument, fault};
     return camera;
 }
 

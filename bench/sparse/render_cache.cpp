@@ -11,10 +11,10 @@ namespace
 {
 
 constexpr uint32_t kNone = ~0u;
-constexpr float kBehind = 0.1f;         // of the mean distance of those about it, by which a point is taken to be hidden
+constexpr float kBehind = 0.1f;         // relative difference of distance by which one point is behind another
 constexpr float kOldest = 64.0f;        // frames: older counts alike
 constexpr float kLeastPriority = 0.01f; // of a pixel whose point is new: a wish for it returns
-constexpr float kHasty = 16.0f;         // frames that points age at once about a change of light
+constexpr float kHasty = 16.0f;         // frames: what points of before have aged by, at least, where light is seen to have changed
 constexpr float kOther = 0.1f;          // relative difference of colours that is a change
 constexpr int kAround = 3;              // pixels to each side that a change, and the mean in a gap, reaches
 constexpr size_t kLooked = 8;           // slots looked at for the oldest

@@ -67,17 +67,18 @@ std::vector<Meaning> meaningsOf(const mat4& m)
          "FrameView::worldFromClip is transposed: it is column-major, times a column vector of clip space"},
         {{glm::inverse(m), same, gpu::kDepthReversed}, "FrameView::worldFromClip takes the world to clip space: give its inverse"},
         {{scaled(0.01f) * m, same, gpu::kDepthReversed},
-         "FrameView::worldFromClip gives centimetres, and the field's world is in metres: scale what it gives, and the eyes, by 0.01"},
+         "FrameView::worldFromClip gives centimetres, and the field's world is in metres: give inFieldsWorld() a matrix that scales by "
+         "0.01"},
         {{scaled(0.001f) * m, same, gpu::kDepthReversed},
-         "FrameView::worldFromClip gives millimetres, and the field's world is in metres: scale what it gives, and the eyes, by 0.001"},
+         "FrameView::worldFromClip gives millimetres, and the field's world is in metres: give inFieldsWorld() a matrix that scales by "
+         "0.001"},
         {{scaled(100.0f) * m, same, gpu::kDepthReversed},
-         "FrameView::worldFromClip gives hundreds of metres, and the field's world is in metres: scale what it gives, and the eyes, by "
-         "100"},
+         "FrameView::worldFromClip gives hundreds of metres, and the field's world is in metres: give inFieldsWorld() a matrix "
+         "that scales by 100"},
         {{zUp * m, zUp, gpu::kDepthReversed},
-         "The frame's world has z up and the field's has y: turn what worldFromClip gives, the eyes and the normals by (x, z, -y)"},
+         "The frame's world has z up and the field's has y: give inFieldsWorld() a matrix that takes (x, y, z) to (x, z, -y)"},
         {{leftHanded * m, leftHanded, gpu::kDepthReversed},
-         "The frame's world is left-handed and the field's is right-handed: negate z in what worldFromClip gives, in the eyes and in the "
-         "normals"},
+         "The frame's world is left-handed and the field's is right-handed: give inFieldsWorld() a matrix that negates z"},
     };
 }
 

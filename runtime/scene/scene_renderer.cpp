@@ -342,12 +342,10 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
 {
     const gpu::LightFieldInfo& space = field.info();
     const CameraBasis basis = basisOf(camera, settings.width, settings.height);
-    gpu::FrameView view{};
-    view.fieldFromNormals = glm::mat3(1.0f);
+    gpu::FrameView view = field.frameView(settings.width, settings.height);
     view.worldFromClip = worldFromClip(camera, basis, space);
     view.eye = camera.eye;
     view.seed = seed;
-    view.size = {settings.width, settings.height};
     view.glossyRays = settings.glossyRays;
     view.raysBelow = settings.raysBelow;
     // Without a frame before, or after a cut, view.follows stays 0 and histories count for nothing.
