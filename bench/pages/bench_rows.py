@@ -130,7 +130,8 @@ def hardest(scene, compared, but):
     return (None, out[0]) if out else max(found, default=(None, None))
 
 
-def targets(scenes):
+def targets(scenes, others):
+    before = json.loads((ROOT / "bench/results/scene_targets.json").read_text())["rows"] if others else {}
     rows = {}
     for text, asked, compared in TARGETS:
         for end, but in (("", ()), ("; others' tracers", ("ours-grid",))):
@@ -138,6 +139,7 @@ def targets(scenes):
             for name, scene in scenes.items():
                 ratio, method = hardest(scene, compared, but)
                 row[slug(name)] = "" if method is None else f"{'out of reach' if ratio is None else f'{ratio:.2f}'} ({SHORT.get(method, NAMES[method])})"
+            row |= {key: before[slug(text + end)][key] for key in others}
     return rows
 
 
@@ -179,22 +181,30 @@ def at_best(points):
     return found
 
 
+def kept(name, scenes):
+    """Of a table that has views besides those that were measured now: its rows, the views' names by slug, and a note of where they come from."""
+    old = json.loads((ROOT / "bench/results" / name).read_text()) if (ROOT / "bench/results" / name).exists() else {"rows": {}, "commit": ""}
+    names = {key.split("__")[0]: row["scene"] for key, row in old["rows"].items() if "scene" in row and row["scene"] not in scenes}
+    return old["rows"], names, [f"{', '.join(names.values())}: measured before, of {old['commit']}"] if names else []
+
+
 def methods(files):
     scenes, commands = scenes_of(files)
-    rows = {}
+    before, others, of_before = kept("scene_methods.json", scenes)
+    rows = {key: row for key, row in before.items() if key.split("__")[0] in others}
     for name, scene in scenes.items():
         for point in at_best(scene["points"]):
             if point["knob"] == "default" or (point["knob"] == "paths" and point["value"] in ("1", "4", "16", "64")):
                 key = slug(point["method"]) + ("" if point["knob"] == "default" else f"_{point['value']}")
                 rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point)
                 rows[f"{slug(name)}__{key}"] |= {"grid_shape": grid_shape(scene, point), "bias": point.get("bias", "")}
-    rows |= summary(rows, scenes)
+    rows |= summary(rows, [*scenes, *others.values()])
     notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
              "..._unsure: the standard error of relMSE by the reference's noise",
-             "times are CPU time of all threads divided by the cores; nothing else running"] + [references(name, scene) for name, scene in scenes.items()]
+             "times are CPU time of all threads divided by the cores; nothing else running"] + [references(name, scene) for name, scene in scenes.items()] + of_before
     write("scene_methods.json", "Every method at its default in one run", commands, notes, rows)
     write("scene_targets.json", "Targets: ours over the hardest opponent, which is named", commands, ["a ratio above the asked one is a missed target"],
-          targets(scenes))
+          targets(scenes, others))
 
 
 def over(value, base):
