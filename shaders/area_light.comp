@@ -14,7 +14,7 @@
 // can be long. Each pixel takes another subset; the filter after it blends them.
 // Dispatch: see findPixel.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 1, binding = kAreaNormalBinding) uniform texture2D gGeometricNormal;
+layout(set = 1, binding = kAreaNormalBinding) uniform utexture2D gGeometricNormal;
 layout(set = 1, binding = kAreaDiffuseBinding, rgba16f) uniform image2D diffuse; // rgb: cosine-weighted mean radiance
 layout(scalar, push_constant) uniform Push { AreaPush push; };
 
@@ -62,7 +62,7 @@ void main()
     if (!p.surface || isNotOf(kTermDiffuse, termsOf(p))) return;
     vec3 light = imageLoad(diffuse, at).rgb;
     vec3 point = (p.position - push.origin) / push.scale;
-    vec3 geometric = texelFetch(gGeometricNormal, at, 0).xyz;
+    vec3 geometric = directionFromOctahedral(unpackUnorm2x16(texelFetch(gGeometricNormal, at, 0).x));
     vec3 irradiance = someLights(kLightEmitter, p, point, geometric, lightsHeader.deltaCount, lightsHeader.emitterCount, 2u, at) +
                       someLights(kLightSky, p, point, geometric, lightsHeader.deltaCount + lightsHeader.emitterCount, lightsHeader.skyCount, 3u, at);
     imageStore(diffuse, at, storedLight(vec4(light + irradiance / kBrdfPi, 1.0)));

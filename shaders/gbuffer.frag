@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "material.glsl"
 #include "stored_light.glsl"
+#include "shared/chart.h"
 
 // See gbuffer.vert. Normals are turned to the viewer's side: every surface has two.
 layout(location = 0) in vec3 relative;
@@ -10,8 +11,8 @@ layout(location = 2) in vec2 uv;
 layout(location = 3) flat in uint material;
 layout(location = 0) out vec4 outNormalRoughness;
 layout(location = 1) out vec4 outBaseColorMetallic;
-layout(location = 2) out vec4 outEmission;
-layout(location = 3) out vec4 outGeometricNormal;
+layout(location = 2) out vec4 outDirect;         // emission: what direct.comp adds to
+layout(location = 3) out uint outGeometricNormal; // octahedral, 2 x 16 bits
 layout(constant_id = kRoughnessOverrideId) const float kRoughnessOverride = -1.0; // >= 0: every surface has this roughness
 
 void main()
@@ -32,6 +33,6 @@ void main()
     if (dot(shading, view) <= 0.0) shading = geometric; // interpolated or bent away from the eye
     outNormalRoughness = vec4(shading, kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness);
     outBaseColorMetallic = vec4(point.baseColor.rgb, point.metallic);
-    outEmission = storedBright(point.emission);
-    outGeometricNormal = vec4(geometric, 0.0);
+    outDirect = storedBright(point.emission);
+    outGeometricNormal = packUnorm2x16(octahedralFromDirection(geometric));
 }

@@ -21,7 +21,10 @@ namespace sconce
 namespace
 {
 
+// The G-buffer, 24 bytes a pixel with depth; emission is drawn into the direct light, which is there anyway. Base colour in 8 bits of sRGB
+// would save 4 of them, and is seen: bench/results/tried.json, frame__srgb.
 constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kGeometricNormalFormat = VK_FORMAT_R32_UINT;
 constexpr VkFormat kPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // what is shown and written, of any brightness
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
@@ -111,15 +114,14 @@ Status SceneRenderer::make()
         return success();
     };
     if (auto s = image(depth, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth"); !s) return s;
-    for (auto [target, format, what] : {std::tuple{&normalRoughness, kGBufferFormat, "normals"},
-                                        {&baseColorMetallic, kGBufferFormat, "base colour"},
-                                        {&emission, kLightFormat, "emission"},
-                                        {&geometricNormal, kGBufferFormat, "geometric normals"}})
-        if (auto s = image(*target, format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
+    for (auto [target, format, usage, what] : {std::tuple{&normalRoughness, kGBufferFormat, VkImageUsageFlags(0), "normals"},
+                                               {&baseColorMetallic, kGBufferFormat, VkImageUsageFlags(0), "base colour"},
+                                               {&direct, kLightFormat, VkImageUsageFlags(VK_IMAGE_USAGE_STORAGE_BIT), "direct light"},
+                                               {&geometricNormal, kGeometricNormalFormat, VkImageUsageFlags(0), "geometric normals"}})
+        if (auto s = image(*target, format, usage | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, what); !s) return s;
     const bool filtersDiffuse = effects.diffuse && !indirect->state().readsSurfaces();
     for (auto [target, format, what, wanted] :
-         {std::tuple{&direct, kLightFormat, "direct light", true},
-          {&beauty, kPictureFormat, "picture", true},
+         {std::tuple{&beauty, kPictureFormat, "picture", true},
           {&scratch, kLightFormat, "scratch of the diffuse filter", filtersDiffuse && !indirect->state().scratch},
           {&diffuseLayer, kLightFormat, "diffuse layer", settings.layers && effects.diffuse},
           {&glossyLayer, kLightFormat, "glossy layer", settings.layers && (effects.rough || rays)}})
@@ -134,7 +136,7 @@ Status SceneRenderer::make()
     indirect->setInputs(gBuffer);
 
     // In the order of the fragment shader's outputs.
-    const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGBufferFormat};
+    const VkFormat formats[] = {kGBufferFormat, kGBufferFormat, kLightFormat, kGeometricNormalFormat};
     const VkDescriptorSetLayout layouts[] = {scene.layout()};
     // Below 0: surfaces keep their own. A specialization constant is 32 bits of any type, here a float's.
     const float roughness = settings.roughness.value_or(-1.0f);
@@ -154,11 +156,9 @@ Status SceneRenderer::make()
     gBufferPass = std::move(*pipeline);
 
     // Without the field's set: direct light is of lights and their shadow maps alone, whatever the probes know.
-    const DescriptorSet::Binding directBindings[] = {{gpu::kDirectEmissionBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                                                     {gpu::kDirectNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+    const DescriptorSet::Binding directBindings[] = {{gpu::kDirectNormalBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                      {gpu::kDirectLightBinding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
     if (auto s = makePass(directPass, directSet, direct_comp, directBindings, sizeof(gpu::DirectPush), scene.layout(), {}); !s) return s;
-    directSet.write(gpu::kDirectEmissionBinding, emission.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(gpu::kDirectNormalBinding, geometricNormal.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     directSet.write(gpu::kDirectLightBinding, direct.view(), VK_IMAGE_LAYOUT_GENERAL);
 
@@ -277,15 +277,17 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(Gpu& gpu, const Dev
 
 void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
 {
-    const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &emission, &geometricNormal};
+    const GpuImage* targets[] = {&normalRoughness, &baseColorMetallic, &direct, &geometricNormal}; // as the shader's outputs
+    const GpuImage* const sampled[] = {&normalRoughness, &baseColorMetallic, &geometricNormal};
     VkRenderingAttachmentInfo colors[4]{};
-    // Write after read: the frame before, or a copy of it to the host, may still read them. From undefined: every pixel is cleared, so that
-    // nothing needs to be kept. No access of the past: after reads alone, a stage to wait for is all.
+    // Write after read: the frame before, or a copy of it to the host, may still read them; and after write: direct light was a pass's.
+    // From undefined: every pixel is cleared, so that nothing needs to be kept.
     constexpr VkPipelineStageFlags2 readers =
         VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     transition(gpu, cmd, targets,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, readers,
-                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
+                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
     for (int i = 0; i < 4; ++i)
     {
         colors[i].sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
@@ -328,8 +330,12 @@ void SceneRenderer::drawGBuffer(VkCommandBuffer cmd, const gpu::SceneView& view)
     scene.mesh().draw(cmd, draws.masked);
     gpu.vk.CmdEndRendering(cmd);
     constexpr VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    // Read after write: compute passes alone read the G-buffer.
-    transition(gpu, cmd, targets,
+    // Read after write: compute passes alone read the G-buffer, and one adds to the direct light.
+    transition(gpu, cmd, direct,
+               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT});
+    transition(gpu, cmd, sampled,
                {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, read, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
     // The same for depth, whichever tests wrote it.
@@ -363,8 +369,9 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
     if (timer) timer->begin(cmd, "G-buffer");
     drawGBuffer(cmd, viewOf(camera, basis, space));
     if (timer) timer->end(cmd);
-    for (const GpuImage* image : {&depth, &normalRoughness, &baseColorMetallic, &emission, &geometricNormal})
+    for (const GpuImage* image : {&depth, &normalRoughness, &baseColorMetallic})
         scanImage(gpu, cmd, "G-buffer", *image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    scanImage(gpu, cmd, "G-buffer", direct);
 
     // Begins by waiting for the frame before, so that nothing of this one, but the G-buffer, may stand ahead of it.
     indirect->record(cmd, view, timer);

@@ -103,7 +103,7 @@ private:
     const DeviceScene& scene;
     LightField field; // a handle: the caller's may go
     RenderSettings settings;
-    GpuImage depth, normalRoughness, baseColorMetallic, emission, geometricNormal, direct, beauty, scratch, diffuseLayer, glossyLayer;
+    GpuImage depth, normalRoughness, baseColorMetallic, geometricNormal, direct, beauty, scratch, diffuseLayer, glossyLayer;
     Pipeline gBufferPass, directPass, areaPass, composePass;
     DescriptorSet directSet, areaSet, composeSet;
     Denoiser denoiser;

@@ -12,7 +12,8 @@ import pathlib
 import struct
 import sys
 
-G_BUFFER = {"gDepth": 4, "gNormalRoughness": 8, "gBaseColorMetallic": 8, "gEmission": 8, "gGeometricNormal": 8}  # as SceneRenderer::make() has them
+G_BUFFER = {"gDepth": 4, "gNormalRoughness": 8, "gBaseColorMetallic": 8, "gGeometricNormal": 4}  # as SceneRenderer::make() has them
+EMISSION = 8  # which is drawn beside them, into the direct light
 TEXEL_BYTES = {1: 16, 2: 8, 3: 4, 30: 16, 33: 4, 35: 8}  # of SPIR-V's formats: Rgba32f, Rgba16f, R32f, Rgba32ui, R32ui, Rg32ui
 READ_PIXEL = {"gDepth", "gNormalRoughness", "gBaseColorMetallic"}
 # The command's frame without layers: passes, how often each runs, and images that it doesn't touch.
@@ -86,7 +87,7 @@ def bytes_of(file, without):
 def main():
     folder = pathlib.Path(sys.argv[1], "shaders/spirv")
     guard = pathlib.Path(sys.argv[2])
-    found = {"G-buffer": {"read": 0, "written": sum(G_BUFFER.values())}}
+    found = {"G-buffer": {"read": 0, "written": sum(G_BUFFER.values()) + EMISSION}}
     for name, (spirv, times, without) in (FRAME | MORE).items():
         read, written = bytes_of(folder / f"{spirv}.spv", without)
         found[name] = {"read": read * times, "written": written * times}
