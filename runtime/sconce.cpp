@@ -31,6 +31,13 @@ Result<Device> Device::create(const HostVulkan& host, Version header)
     return Device(std::move(*gpu));
 }
 
+Result<Device> Device::forThread() const
+{
+    auto gpu = shared->forThread();
+    if (!gpu) return gpu.error();
+    return Device(std::move(*gpu));
+}
+
 uint64_t Device::bytes() const
 {
     return shared->memory().used();
@@ -116,6 +123,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.bounces = desc.bounces;
     settings.converged = desc.converged;
     settings.rays = desc.rays;
+    settings.faces = desc.faces;
     settings.liveLinks = desc.liveLinks;
     settings.lit = desc.lit;
     settings.take(*plan);

@@ -4,8 +4,9 @@
 // shaders/light_field.glsl and the headers that GLSL and C++ share.
 //
 // A host keeps its instance, device, queue and command buffers. What it gets are handles: they keep alive what they need, so that they may
-// be moved, copied where they can be, and destroyed in any order, once the GPU has finished with them. Calls on one Device and on what was
-// made from it are the host's to serialise; two devices may be used from two threads.
+// be moved, copied where they can be, and destroyed in any order and on any thread, once the GPU has finished with them. Calls on one
+// Device and on what was made from it are the host's to serialise. Two Devices may be used from two threads; a thread that loads fields for
+// one that draws them has a Device of its own by Device::forThread().
 
 #include <array>
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include "base/knobs.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "runtime/bake/probe_faces.h"
 #include "runtime/field/quality.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/frame/g_buffer.h"
@@ -48,14 +50,18 @@ Version libraryVersion();
 
 class Gpu;
 
-/// A host's device, and what the library makes for itself on it: functions, memory, a command buffer for uploads. A shared handle.
+/// A host's device, and what the library makes for itself on it: functions, memory, a command buffer for uploads. A shared handle, for one
+/// thread at a time.
 class Device
 {
 public:
     /// @param header  leave it out: a library of another major or minor version than this header is refused
     /// Errors: badArgument (a handle is missing, the version), missingFeature (named), deviceFailure.
     static Result<Device> create(const HostVulkan& host, Version header = {});
-    uint64_t bytes() const;              // of device memory that the library holds now
+    /// For another thread: with memory, its budget and compiled passes in common, so that either draws what the other has loaded. Both
+    /// submit to the host's queue, which is then the host's to lock (HostVulkan::submit). Errors: outOfMemory, deviceFailure.
+    Result<Device> forThread() const;
+    uint64_t bytes() const;              // of device memory that the library holds now, all threads' together
     Gpu& gpu() const { return *shared; } // for the library's own folders
 
 private:
@@ -376,13 +382,15 @@ struct BakeDesc
     const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
     uint32_t liveLinks = knobs::liveLinks.value; // of each surface texel, so that LiveLight moves lights; 0: they stay
     bool lit = true;                    // false: geometry and material alone, with live links: no light until LiveLight has recorded
+    ProbeFaces* faces = nullptr;        // draws what probes see, without liveLinks and groups; null: the scene's triangles are drawn
     std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked
 };
 
 /// Bakes a scene at given probes on the host's device and writes the field to a file, whole or not at all. Submits and waits. Same input,
 /// same driver: same bytes.
 /// @param probes  world, metres; 1 to 65,535
-/// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, fileError, cancelled.
+/// Errors: badArgument (settings, probes: named), badInput (scene; with rays, drawn faces that show another world), outOfMemory (with the
+/// numbers), deviceFailure, fileError, cancelled.
 Status bakeLightField(const Device& device, const Scene& scene, std::span<const vec3> probes, const BakeDesc& desc,
                       const std::filesystem::path& file, const Progress& progress = {});
 

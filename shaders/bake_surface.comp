@@ -2,14 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "bake_probe.glsl"
-#include "bake_seen.glsl"
+#include "probe_face.glsl"
 #include "lights.glsl"
 
 // Bake: a probe's rasterised faces become distance words, radiance under direct light, and what a bounce needs of the surface: all lobes are
 // baked as one diffuse lobe that reflects as much light (hemisphericalAlbedo).
 // Dispatch: ceil(N/8) x ceil(N/8) x 6.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 1, binding = kBakeSurfaceBinding) uniform utexture2D surfaceImage; // [6 N][N], faces below each other; layout: bake_gbuffer.frag
+layout(set = 1, binding = kBakeSurfaceBinding) uniform utexture2D surfaceImage; // [6 N][N], faces below each other; layout: probe_face.glsl
 layout(set = 1, binding = kBakeDepthBinding) uniform texture2D depthImage;    // near / W, 0: sky
 
 layout(constant_id = kBakeAreaLightId) const bool kAreaLight = true;

@@ -36,6 +36,23 @@ void blitMips(vk::CommandBuffer cmd, const Image& image)
     transition(cmd, image, kWritten, kSampled, {image.mips - 1, 1});
 }
 
+constexpr vk::ShaderStageFlags kDrawStages = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
+
+/// gbuffer_push.glsl, scalar layout.
+struct Push
+{
+    glm::mat4 clipFromRelative;
+    glm::vec4 baseColor;
+    glm::vec3 emission;
+    float metallic;
+    glm::vec3 eye;
+    float roughness;
+    float normalScale;
+    float alphaCutoff;
+    float fieldsZ;
+};
+static_assert(sizeof(Push) == 124); // 128 is what every device has
+
 } // namespace
 
 Image DrawnScene::texture(const Picture& picture, vk::Format format) const
@@ -101,6 +118,26 @@ void DrawnScene::bindVertices(vk::CommandBuffer cmd) const
 {
     cmd.bindVertexBuffers(0, *vertices.buffer, vk::DeviceSize(0));
     cmd.bindIndexBuffer(*indices.buffer, 0, vk::IndexType::eUint32);
+}
+
+vk::raii::PipelineLayout DrawnScene::drawLayout() const
+{
+    const vk::PushConstantRange push{kDrawStages, 0, sizeof(Push)};
+    return {gpu.device,
+            {.setLayoutCount = 1, .pSetLayouts = &*materials.layout, .pushConstantRangeCount = 1, .pPushConstantRanges = &push}};
+}
+
+void DrawnScene::draw(vk::CommandBuffer cmd, vk::PipelineLayout layout, const glm::mat4& clip, glm::vec3 eye, float fieldsZ) const
+{
+    bindVertices(cmd);
+    for (const Part& part : source.parts)
+    {
+        const Material& of = source.materials[part.material];
+        const Push push{clip, of.baseColor, of.emission, of.metallic, eye, of.roughness, of.normalScale, of.alphaCutoff, fieldsZ};
+        cmd.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0, *materials.sets[part.material], {});
+        cmd.pushConstants<Push>(layout, kDrawStages, 0, push);
+        cmd.drawIndexed(part.indices, 1, part.firstIndex, 0, 0);
+    }
 }
 
 vk::PipelineVertexInputStateCreateInfo DrawnScene::vertexInput(uint32_t attributes)

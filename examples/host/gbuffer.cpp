@@ -1,29 +1,10 @@
 #include "gbuffer.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "draw_pipeline.h"
 #include "gbuffer_frag.h"
 #include "gbuffer_vert.h"
-
-namespace
-{
-
-constexpr vk::ShaderStageFlags kStages = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
-
-/// gbuffer_push.glsl, scalar layout.
-struct Push
-{
-    glm::mat4 clipFromWorld;
-    glm::vec4 baseColor;
-    glm::vec3 emission;
-    float metallic;
-    glm::vec3 eye;
-    float roughness;
-    float normalScale;
-    float alphaCutoff;
-};
-static_assert(sizeof(Push) == 120); // 128 is what every device has
-
-} // namespace
 
 GBuffer::GBuffer(const Vulkan& vulkan, const DrawnScene& drawn, vk::Extent2D size) : scene(drawn)
 {
@@ -34,10 +15,7 @@ GBuffer::GBuffer(const Vulkan& vulkan, const DrawnScene& drawn, vk::Extent2D siz
     baseColorMetallic = vulkan.makeImage(half, size, Usage::eColorAttachment | Usage::eSampled);
     emission = vulkan.makeImage(full, size, Usage::eColorAttachment | Usage::eSampled); // lamps may be beyond half floats
 
-    const vk::PushConstantRange push{kStages, 0, sizeof(Push)};
-    const vk::DescriptorSetLayout sets[] = {scene.materialLayout()};
-    layout = vk::raii::PipelineLayout(
-        vulkan.device, {.setLayoutCount = 1, .pSetLayouts = sets, .pushConstantRangeCount = 1, .pPushConstantRanges = &push});
+    layout = scene.drawLayout();
     const vk::Format formats[] = {half, half, full};
     pipeline = makeDrawPipeline(
         vulkan,
@@ -59,23 +37,9 @@ void GBuffer::record(vk::CommandBuffer cmd, const Camera& camera, Convention con
 
     beginDrawing(cmd, targets, depth, 0.0f);
     cmd.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline);
-    scene.bindVertices(cmd);
-    Push push{};
-    push.clipFromWorld = clipFromWorld(camera, convention, double(depth.size.width) / depth.size.height);
-    push.eye = camera.eye;
-    for (const Part& part : scene.model().parts)
-    {
-        const Material& material = scene.model().materials[part.material];
-        push.baseColor = material.baseColor;
-        push.emission = material.emission;
-        push.metallic = material.metallic;
-        push.roughness = material.roughness;
-        push.normalScale = material.normalScale;
-        push.alphaCutoff = material.alphaCutoff;
-        cmd.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout, 0, scene.material(part.material), {});
-        cmd.pushConstants<Push>(*layout, kStages, 0, push);
-        cmd.drawIndexed(part.indices, 1, part.firstIndex, 0, 0);
-    }
+    // From the eye, as shaders take it: far from the origin no bits are lost.
+    const glm::dmat4 clip = clipFromWorld(camera, convention, double(depth.size.width) / depth.size.height);
+    scene.draw(cmd, *layout, clip * glm::translate(glm::dmat4(1.0), glm::dvec3(camera.eye)), camera.eye);
     cmd.endRendering();
     for (const Image* target : targets) transition(cmd, *target, color, read);
     transition(cmd, depth, tests, read);

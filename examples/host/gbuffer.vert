@@ -14,5 +14,5 @@ void main()
     fromEye = inPosition - eye;
     normal = inNormal;
     uv = inUv;
-    gl_Position = clipFromWorld * vec4(inPosition, 1.0);
+    gl_Position = clipFromRelative * vec4(fromEye, 1.0);
 }

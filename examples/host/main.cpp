@@ -10,6 +10,7 @@
 #include "gbuffer.h"
 #include "gltf_mesh.h"
 #include "lighting.h"
+#include "sconce_bake.h"
 #include "sconce_gi.h"
 #include "sun_shadow.h"
 
@@ -20,6 +21,7 @@ constexpr const char* kUsage = R"(usage: host SCENE.gltf|SCENE.glb FIELD.sconce 
   --camera N      camera of the scene, from 0 (default: 0)
   --size WxH      pixels (default: 640x360)
   --frames N      frames that are drawn, 1 to 1000; more than one are filtered over time (default: 1)
+  --probe X,Y,Z   a place to see the scene from, once for each: the field is baked first, by what this host draws there
   --left-handed   a world with z turned round and a camera that looks along +z; the picture is the same
   --validation    with the validation layer, and Sconce's look at its inputs; what they find is a failure
 )";
@@ -28,9 +30,19 @@ struct Options
 {
     std::string scene, field, output;
     uint32_t camera = 0, width = 640, height = 360, frames = 1;
+    std::vector<glm::vec3> probes;
     Convention convention;
     bool validation = false;
 };
+
+glm::vec3 placeOf(const std::string& text)
+{
+    glm::vec3 place;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%f,%f,%f%c", &place.x, &place.y, &place.z, &rest) != 3)
+        throw std::invalid_argument("--probe is '" + text + "'; write a place in metres, as 1,1.5,-2");
+    return place;
+}
 
 /// @param limit  the largest that is allowed
 uint32_t numberOf(const std::string& text, const char* option, uint32_t least, uint32_t limit)
@@ -61,6 +73,8 @@ Options parse(int argc, char** argv)
             options.camera = numberOf(value(), "--camera", 0, 1'000'000);
         else if (word == "--frames")
             options.frames = numberOf(value(), "--frames", 1, 1000);
+        else if (word == "--probe")
+            options.probes.push_back(placeOf(value()));
         else if (word == "--left-handed")
             options.convention.leftHanded = true;
         else if (word == "--validation")
@@ -109,6 +123,7 @@ void draw(const Vulkan& vulkan, Allocators& lent, const Options& options)
 {
     const DrawnScene scene(vulkan, loadGltf(options.scene, options.convention.axes()));
     for (const std::string& warning : scene.model().warnings) std::fprintf(stderr, "host: %s\n", warning.c_str());
+    if (!options.probes.empty()) bakeField(vulkan, lent, scene, options.convention, options.probes, options.field);
     const auto& cameras = scene.model().cameras;
     if (options.camera >= cameras.size())
         throw std::runtime_error("--camera is " + std::to_string(options.camera) + ", and '" + options.scene + "' has " +
@@ -151,7 +166,7 @@ void draw(const Vulkan& vulkan, Allocators& lent, const Options& options)
 
 int run(const Options& options)
 {
-    const Vulkan vulkan(SconceGi::missing, options.validation);
+    const Vulkan vulkan(SconceGi::missing, SconceGi::addFeatures, options.validation);
     Allocators lent(*vulkan.device);
     draw(vulkan, lent, options);
     std::printf("afterwards %llu bytes of device memory and %lld blocks of main memory, of %llu and %lld\n",

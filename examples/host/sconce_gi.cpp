@@ -20,8 +20,7 @@ std::vector<std::string> SconceGi::missing(VkInstance instance, VkPhysicalDevice
     return sconce::missingFeatures(vkGetInstanceProcAddr, instance, device);
 }
 
-SconceGi::SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem::path& file, VkExtent2D wanted, bool temporal)
-    : size(wanted)
+sconce::Device SconceGi::deviceOf(const Vulkan& vulkan, Allocators& lent)
 {
     sconce::HostVulkan host;
     host.instance = *vulkan.instance;
@@ -33,7 +32,12 @@ SconceGi::SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem
     host.allocationCallbacks = lent.main.callbacks();
     host.allocateMemory = [&lent](const VkMemoryAllocateInfo& info, VkDeviceMemory& got) { return lent.device.allocate(info, got); };
     host.freeMemory = [&lent](VkDeviceMemory back) { lent.device.free(back); };
-    device = valueOf(sconce::Device::create(host));
+    return valueOf(sconce::Device::create(host));
+}
+
+SconceGi::SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem::path& file, VkExtent2D wanted, bool temporal)
+    : size(wanted), device(deviceOf(vulkan, lent))
+{
     field = valueOf(sconce::LightField::load(*device, file));
     sconce::IndirectLight::Desc desc{.width = size.width, .height = size.height, .effects = field->effectsOfFrames()};
     desc.effects.temporal = temporal;

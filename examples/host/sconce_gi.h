@@ -1,6 +1,7 @@
 #pragma once
 
-// Sconce in this renderer. With sconce_gi.cpp and sconce_gi.glsl it is all that a host writes: no other file knows the library.
+// Sconce in this renderer. With sconce_gi.cpp and sconce_gi.glsl it is all that a host writes: but for sconce_bake.*, by which it
+// bakes, no other file knows the library.
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -22,6 +23,8 @@ public:
 
     /// What a device lacks to run the library.
     static std::vector<std::string> missing(VkInstance instance, VkPhysicalDevice device);
+    static constexpr auto addFeatures = sconce::requireFeatures;
+    static sconce::Device deviceOf(const Vulkan& vulkan, Allocators& lent);
     /// Goes once the GPU is done. @param lent  outlives it. @param temporal  filter over frames that follow one another
     SconceGi(const Vulkan& vulkan, Allocators& lent, const std::filesystem::path& field, VkExtent2D size, bool temporal);
 

@@ -44,11 +44,11 @@ Memory::Memory(DeviceMemory& from, const VkMemoryAllocateInfo& info) : allocator
         throw std::runtime_error("the device has no " + std::to_string(info.allocationSize) + " bytes left; ask for a smaller picture");
 }
 
-Vulkan::Vulkan(const Missing& missing, bool validation)
+Vulkan::Vulkan(const Missing& missing, const Features& add, bool validation)
 {
     makeInstance(validation);
     chooseDevice(missing);
-    makeDevice();
+    makeDevice(add);
 }
 
 void Vulkan::makeInstance(bool validation)
@@ -101,10 +101,11 @@ void Vulkan::chooseDevice(const Missing& missing)
     family = uint32_t(usableFamily(physicalDevice));
 }
 
-void Vulkan::makeDevice()
+void Vulkan::makeDevice(const Features& add)
 {
     vk::PhysicalDeviceVulkan13Features features13{.synchronization2 = true, .dynamicRendering = true};
-    const vk::PhysicalDeviceVulkan12Features features12{.pNext = &features13, .scalarBlockLayout = true, .bufferDeviceAddress = true};
+    vk::PhysicalDeviceVulkan12Features features12{.pNext = &features13};
+    add(features12, features13);
     constexpr float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queues{.queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &priority};
     device = vk::raii::Device(physicalDevice, {.pNext = &features12, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queues});

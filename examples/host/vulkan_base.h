@@ -77,9 +77,11 @@ class Vulkan
 {
 public:
     using Missing = std::function<std::vector<std::string>(VkInstance, VkPhysicalDevice)>;
+    using Features = std::function<void(VkPhysicalDeviceVulkan12Features&, VkPhysicalDeviceVulkan13Features&)>;
     /// @param missing     names what a device lacks of what the program's libraries need: then it is passed over
+    /// @param add         switches on what they need beside what this host does
     /// @param validation  core and synchronization validation, where the layer is installed; messages go to stderr and are counted
-    Vulkan(const Missing& missing, bool validation);
+    Vulkan(const Missing& missing, const Features& add, bool validation);
 
     Image makeImage(vk::Format format, vk::Extent2D size, vk::ImageUsageFlags usage, uint32_t mips = 1) const;
     /// @param shared  the processor sees it, at Buffer::mapped
@@ -95,7 +97,7 @@ public:
 private:
     void makeInstance(bool validation);
     void chooseDevice(const Missing& missing);
-    void makeDevice();
+    void makeDevice(const Features& add);
     Memory allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted, bool addressed) const;
 
     std::unique_ptr<size_t> messages = std::make_unique<size_t>(0); // outlives the instance, whose messenger counts here

@@ -127,7 +127,7 @@ int run(const Options& options)
 {
     const auto missing = [](VkInstance instance, VkPhysicalDevice device)
     { return sconce::missingFeatures(vkGetInstanceProcAddr, instance, device); };
-    const Vulkan vulkan(missing, options.validation);
+    const Vulkan vulkan(missing, sconce::requireFeatures, options.validation);
     sconce::HostVulkan lent;
     lent.instance = *vulkan.instance;
     lent.physicalDevice = *vulkan.physicalDevice;

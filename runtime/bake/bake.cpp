@@ -14,6 +14,7 @@
 #include "runtime/bake/bake_key.h"
 #include "runtime/bake/bake_parts.h"
 #include "runtime/bake/counted_rays.h"
+#include "runtime/bake/drawn_faces.h"
 #include "runtime/bake/host_memory.h"
 #include "runtime/bake/lamps.h"
 #include "runtime/bake/patches.h"
@@ -65,6 +66,8 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
                     faultOf(knobs::surfaceRefined, settings.surfaceRefined), faultOf(knobs::lampTexels, settings.lampTexels),
                     faultOf(knobs::liveLinks, settings.liveLinks)});
     if (!fault.empty()) return fault;
+    if (settings.faces && settings.journal)
+        return "what a host draws is no part of a journal's key; bake without a journal, or let the bake draw the scene";
     if (settings.compact && settings.chart != gpu::kChartCube)
         return "compact maps are of cube faces, and these are octahedral; leave compact false";
     if (probes.empty() || probes.size() > kMostProbes)
@@ -247,8 +250,8 @@ struct Bake
     Status finish(const BakeSettings& settings);
     bool does(BakeStage stage, size_t probe) const { return !shard || (shard->stage == stage && shard->has(probe)); }
     bool takeMaps(size_t probe);
-    Status bakeMaps(ProbeBaker& baker, size_t probe);
-    Status directLight(ProbeBaker& baker);
+    Status bakeMaps(ProbeBaker& baker, const BakeSettings& settings, size_t probe);
+    Status directLight(ProbeBaker& baker, const BakeSettings& settings);
     Status index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice);
     Result<LightField> asItIs(Gpu& gpu);
     Status reflect(const LightField& lit, ProbeBaker& baker, const std::string& stage);
@@ -267,19 +270,29 @@ bool Bake::takeMaps(size_t probe)
                        asWritableBytes(to.irradiance), asWritableBytes(to.texels), asWritableBytes(cubeOf(probe))});
 }
 
-Status Bake::bakeMaps(ProbeBaker& baker, size_t probe)
+Status Bake::bakeMaps(ProbeBaker& baker, const BakeSettings& settings, size_t probe)
 {
     std::vector<uint32_t> faces(octahedral() ? size_t(6) * field.info.faceSize * field.info.faceSize : 0);
     ProbeTarget to = target(probe);
     to.faces = faces;
-    if (auto status = baker.bakeDirect(field.probes[probe].centre, to); !status) return status;
+    const vec3 centre = field.probes[probe].centre;
+    if (auto status = baker.bakeDirect(uint32_t(probe), centre, to); !status) return status;
+    if (settings.faces && settings.rays)
+    {
+        const uint32_t size = field.info.faceSize;
+        const std::string fault =
+            octahedral()
+                ? faultOfDrawn(*settings.rays, field.info, centre, uint32_t(probe), faces, size, size_t(size) * size)
+                : faultOfDrawn(*settings.rays, field.info, centre, uint32_t(probe), to.distance, size, field.info.wordsPerProbe / 6);
+        if (!fault.empty()) return Error{ErrorCode::badInput, fmt::format("Bake: {}", fault)};
+    }
     if (octahedral()) halveFaces(faces, field.info.faceSize, cube.info, cubeOf(probe).data());
     return parts.keep(BakeStage::maps, uint32_t(probe),
                       {asBytes(to.distance), asBytes(to.radiance), asBytes(to.surface), asBytes(to.emitted), asBytes(to.irradiance),
                        asBytes(to.texels), asBytes(cubeOf(probe))});
 }
 
-Status Bake::directLight(ProbeBaker& baker)
+Status Bake::directLight(ProbeBaker& baker, const BakeSettings& settings)
 {
     for (size_t i = 0; i < field.probes.size(); ++i)
     {
@@ -290,7 +303,7 @@ Status Bake::directLight(ProbeBaker& baker)
             return Error{
                 ErrorCode::badInput,
                 fmt::format("The maps of probe {} of {} are in no part; give the parts of all shards of the maps", i, field.probes.size())};
-        if (auto status = bakeMaps(baker, i); !status) return status;
+        if (auto status = bakeMaps(baker, settings, i); !status) return status;
     }
     return success();
 }
@@ -617,7 +630,8 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         if (!deviceScene) return deviceScene.error();
         // By the layout as this bake found it, with its lamps: for each it is another key, and for each next one the same.
         if (settings.journal) bake.parts = {settings.journal, bakeKey(scene, probes, settings)};
-        auto baker = ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light));
+        auto baker =
+            ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light), settings.faces);
         if (!baker) return baker.error();
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();
@@ -627,7 +641,7 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
         if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
         bake.takeRoom(emitters);
-        if (auto status = bake.directLight(**baker); !status) return status.error();
+        if (auto status = bake.directLight(**baker, settings); !status) return status.error();
         spent.probeSeconds = watch.lap();
         if (shard && shard->stage == BakeStage::maps) return finished(spent);
         // The bounces find their probes by the octree, so it comes before them.

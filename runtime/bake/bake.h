@@ -5,6 +5,7 @@
 
 #include "base/knobs.h"
 #include "base/progress.h"
+#include "runtime/bake/probe_faces.h"
 #include "runtime/field/field_data.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/device_scene.h"
@@ -34,6 +35,7 @@ struct BakeSettings
     uint32_t liveLinks = knobs::liveLinks.value;         // of each texel, so that lights may move; bakeLightGroups() makes them; 0: none
     bool lit = true;                                     // false: geometry and material alone, with live links; relightField() lights it
     const ExactRays* rays = nullptr;     // to the triangles of the scene that is baked, that gather it; null: through the field
+    ProbeFaces* faces = nullptr;         // draws what probes see; null: the bake draws the scene
     DeviceSceneDesc scene;               // textures and lights
     std::vector<std::string> effects;    // names of the plan's effects, kept in the file for reports
     bool radiance = true;                // keep the maps' radiance, which traced rays need: half of the field

@@ -82,6 +82,9 @@ std::string groupFault(const BakeSettings& settings)
 {
     if (settings.chart != gpu::kChartCube || settings.surfaceTexels == 0 || settings.light)
         return "light groups are kept of surface light on cube faces; give surface texels, and the chart cube";
+    if (settings.faces)
+        return "faces that a host draws show the emission of all lights at once, and light groups and live links keep it apart; bake "
+               "without them, or let the bake draw the scene";
     if (settings.compact)
         return "light that may change can't be in blocks; leave compact false, or bake without light groups and live links";
     if (settings.liveLinks == 0)

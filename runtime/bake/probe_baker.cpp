@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "runtime/bake/drawn_faces.h"
 #include "runtime/vulkan/nan_scan.h"
 
 #include "spirv/bake_bounce_comp.h"
@@ -28,9 +29,6 @@ namespace sconce
 namespace
 {
 
-constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32B32A32_UINT; // layout: shaders/bake_gbuffer.frag
-constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-
 void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 {
     // Read after write: a probe's passes read each other's results, and copyOut() takes the last. They also overwrite what earlier ones
@@ -44,9 +42,9 @@ void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
 } // namespace
 
 Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
-                                                       bool surfaceLight, bool coatsByRays)
+                                                       bool surfaceLight, bool coatsByRays, ProbeFaces* faces)
 {
-    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight, coatsByRays));
+    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight, coatsByRays, faces));
     baker->octahedral = info.chart == gpu::kChartOctahedral;
     baker->emitters = scene.lights().shines;
     baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
@@ -62,12 +60,12 @@ Status ProbeBaker::createBuffers()
     desc.width = n;
     // The six faces below one another: one image, one render pass, one pair of transitions.
     desc.height = 6 * n;
-    desc.format = kSurfaceFormat;
+    desc.format = kProbeFaceFormat;
     desc.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     auto surface = gpu.makeImage(desc, "A probe's faces");
     if (!surface) return surface.error();
     surfaceImage = std::move(*surface);
-    desc.format = kDepthFormat;
+    desc.format = kProbeDepthFormat;
     desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     auto depth = gpu.makeImage(desc, "A probe's depth");
     if (!depth) return depth.error();
@@ -113,7 +111,7 @@ Status ProbeBaker::createBuffers()
 Status ProbeBaker::createPipelines()
 {
     const VkDescriptorSetLayout sceneSet[] = {scene.layout()};
-    const VkFormat formats[] = {kSurfaceFormat};
+    const VkFormat formats[] = {kProbeFaceFormat};
     Pipeline::Graphics desc;
     desc.vertex = bake_gbuffer_vert;
     desc.sets = sceneSet;
@@ -121,10 +119,10 @@ Status ProbeBaker::createPipelines()
     desc.vertexBindings = SceneMesh::vertexBindings();
     desc.vertexAttributes = SceneMesh::vertexAttributes();
     desc.colorFormats = formats;
-    desc.depthFormat = kDepthFormat;
+    desc.depthFormat = kProbeDepthFormat;
     for (const auto& [pipeline, fragment] : {std::pair<Pipeline*, Spirv>{&opaque, bake_gbuffer_frag}, {&masked, bake_gbuffer_masked_frag}})
     {
-        if (pipeline == &masked && !scene.mesh().hasMasked()) continue;
+        if (hostFaces || (pipeline == &masked && !scene.mesh().hasMasked())) continue;
         desc.fragment = fragment;
         auto made = Pipeline::graphics(gpu, desc);
         if (!made) return made.error();
@@ -182,7 +180,22 @@ void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::sp
     afterCompute(gpu, cmd);
 }
 
-void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
+void ProbeBaker::drawScene(VkCommandBuffer cmd, const gpu::SceneView& view)
+{
+    const VkDescriptorSet sets[] = {scene.descriptorSet()};
+    scene.mesh().bind(cmd);
+    scene.mesh().leaveOutBackFaces(cmd, view);
+    scene.mesh().cull(view, draws);
+    for (const auto& [pipeline, runs] : {std::pair(&opaque, &draws.opaque), std::pair(&masked, &draws.masked)})
+    {
+        if (runs->empty()) continue;
+        pipeline->bind(cmd, sets);
+        pipeline->push(cmd, view);
+        scene.mesh().draw(cmd, *runs);
+    }
+}
+
+Status ProbeBaker::recordFaces(VkCommandBuffer cmd, uint32_t probe, vec3 centre)
 {
     const uint32_t n = info.faceSize;
     // The faces of the probe before are dropped (undefined), and the passes that read them are done, since submit() waited: nothing to wait
@@ -213,24 +226,18 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
     rendering.pColorAttachments = &color;
     rendering.pDepthAttachment = &depth;
     gpu.vk.CmdBeginRendering(cmd, &rendering);
-    scene.mesh().bind(cmd);
-    const VkDescriptorSet sets[] = {scene.descriptorSet()};
-    for (int face = 0; face < 6; ++face)
+    Status drawn = success();
+    for (int face = 0; face < 6 && drawn; ++face)
     {
         const VkViewport viewport{0.0f, float(n) * float(face), float(n), float(n), 0.0f, 1.0f};
         const VkRect2D scissor{{0, int32_t(n) * face}, {n, n}};
         gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
         gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
         const gpu::SceneView view = faceView(centre, face, kProbeNear * info.diagonal);
-        scene.mesh().leaveOutBackFaces(cmd, view);
-        scene.mesh().cull(view, draws);
-        for (const auto& [pipeline, runs] : {std::pair(&opaque, &draws.opaque), std::pair(&masked, &draws.masked)})
-        {
-            if (runs->empty()) continue;
-            pipeline->bind(cmd, sets);
-            pipeline->push(cmd, view);
-            scene.mesh().draw(cmd, *runs);
-        }
+        if (hostFaces)
+            drawn = hostFaces->draw(cmd, faceInWorld(view, info, probe, uint32_t(face)));
+        else
+            drawScene(cmd, view);
     }
     gpu.vk.CmdEndRendering(cmd);
     // Read after write: compute passes alone sample the faces, to make the maps.
@@ -244,6 +251,7 @@ void ProbeBaker::recordFaces(VkCommandBuffer cmd, vec3 centre)
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                 VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
     scanImage(gpu, cmd, "bake faces", depthImage, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    return drawn;
 }
 
 void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
@@ -310,7 +318,7 @@ void ProbeBaker::copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> piec
     gpu.vk.CmdCopyBuffer(cmd, from.handle(), transfer.handle(), uint32_t(pieces.size()), pieces.data());
 }
 
-Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
+Status ProbeBaker::bakeDirect(uint32_t probe, vec3 centre, const ProbeTarget& target)
 {
     const VkDeviceSize wordBytes = info.wordsPerProbe * VkDeviceSize(4), lightBytes = radianceWords * VkDeviceSize(emitters ? 12 : 8);
     const VkDeviceSize faceBytes = octahedral ? VkDeviceSize(6) * info.faceSize * info.faceSize * 4 : 0;
@@ -319,10 +327,11 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
            target.faces.size_bytes() == faceBytes && target.texels.size_bytes() == 4 * texelWords());
     const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWordsPerProbe * 4;
     const VkDeviceSize texelsAt = facesAt + faceBytes;
+    Status drawn = success();
     auto status = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
-            recordFaces(cmd, centre);
+            drawn = recordFaces(cmd, probe, centre);
             recordMaps(cmd, centre);
             recordGather(cmd, false);
             recordGather(cmd, true);
@@ -336,6 +345,7 @@ Status ProbeBaker::bakeDirect(vec3 centre, const ProbeTarget& target)
             memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                           VK_ACCESS_2_HOST_READ_BIT);
         });
+    if (!drawn) return drawn; // what was recorded before is done, and is nobody's
     if (!status) return status;
     const std::byte* from = transfer.mapped();
     for (const std::span<uint32_t> part :

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "runtime/bake/probe_faces.h"
 #include "runtime/field/light_field.h"
 #include "runtime/scene/device_scene.h"
 #include "shaders/shared/bake_passes.h"
@@ -31,11 +32,13 @@ class ProbeBaker
 public:
     /// @param surfaceLight  whether surfaces are lit by surface light: direct light is then of what has no extent alone
     /// @param coatsByRays   whether rays to triangles find what coats reflect of it, so that it isn't in the probes' light
+    /// @param faces         draws in place of the scene's mesh; null: the mesh is drawn
     static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
-                                                      bool surfaceLight, bool coatsByRays);
+                                                      bool surfaceLight, bool coatsByRays, ProbeFaces* faces);
 
     /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
-    Status bakeDirect(vec3 centre, const ProbeTarget& target);
+    /// Errors: those of ProbeFaces::draw(), outOfMemory, deviceFailure.
+    Status bakeDirect(uint32_t probe, vec3 centre, const ProbeTarget& target);
     /// Radiance = direct + what the surfaces reflect of the field's irradiance; then the probe's irradiance of that, moments untouched.
     /// With surface light, which the field must hold by then, what the surfaces reflect of that.
     /// @param field   with a probe of the same number at the same place; may be another than that which is baked
@@ -43,13 +46,15 @@ public:
     Status bakeBounce(uint32_t probe, vec3 centre, const LightField& field, std::span<const uint32_t> direct, const ProbeTarget& target);
 
 private:
-    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo, bool surfaceLight, bool coatsByRays)
-        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight), coats(coatsByRays)
+    ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo, bool surfaceLight, bool coatsByRays,
+               ProbeFaces* facesOfHost)
+        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight), coats(coatsByRays), hostFaces(facesOfHost)
     {
     }
     Status createPipelines();
     Status createBuffers();
-    void recordFaces(VkCommandBuffer cmd, vec3 centre);
+    void drawScene(VkCommandBuffer cmd, const gpu::SceneView& view);
+    Status recordFaces(VkCommandBuffer cmd, uint32_t probe, vec3 centre);
     void recordMaps(VkCommandBuffer cmd, vec3 centre);
     void recordGather(VkCommandBuffer cmd, bool moments);
     void dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const gpu::BakePush& push,
@@ -63,6 +68,7 @@ private:
     const gpu::LightFieldInfo info;
     const bool surfacesLit; // by surface light
     const bool coats;       // are lit by rays
+    ProbeFaces* hostFaces;  // null: the scene's mesh is drawn
     bool octahedral = false;
     bool emitters = false;      // whether emission is kept a texel
     uint32_t radianceWords = 0; // of the chart

@@ -483,7 +483,7 @@ namespace
 {
 
 /// Of each material, how much of the light straight from lights its surface sends, over what it would by its albedo: normal textures
-/// spread, and the mean of what many normals get of a light is less than what their mean gets. bake_gbuffer.frag finds the same from mips.
+/// spread, and the mean of what many normals get of a light is less than what their mean gets. probe_face.glsl finds the same from mips.
 std::vector<float> straightShares(const Scene& scene)
 {
     constexpr int kSteps = 64; // places of a texture, along each side

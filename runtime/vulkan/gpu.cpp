@@ -97,24 +97,42 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     if (!rays) return rays.error();
     gpu->raysALane = *rays;
     gpu->pool = std::make_unique<GpuMemory>(gpu->host, gpu->vk);
+    if (auto status = gpu->makeCommands(); !status) return status.error();
+    return gpu;
+}
 
+Result<std::shared_ptr<Gpu>> Gpu::forThread()
+{
+    std::shared_ptr<Gpu> gpu(new Gpu(host));
+    gpu->first = home().shared_from_this();
+    gpu->vk = vk;
+    gpu->properties = properties;
+    gpu->timestamps = timestamps;
+    gpu->raysALane = raysALane;
+    if (auto status = gpu->makeCommands(); !status) return status.error();
+    return gpu;
+}
+
+/// What a thread has alone.
+Status Gpu::makeCommands()
+{
     VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     poolInfo.queueFamilyIndex = host.queueFamily;
-    VkResult result = gpu->commandPool.make(*gpu, gpu->vk.CreateCommandPool, host.device, &poolInfo, host.allocationCallbacks);
-    if (result != VK_SUCCESS) return gpu->failure("vkCreateCommandPool", result);
+    VkResult result = commandPool.make(*this, vk.CreateCommandPool, host.device, &poolInfo, host.allocationCallbacks);
+    if (result != VK_SUCCESS) return failure("vkCreateCommandPool", result);
     VkCommandBufferAllocateInfo commandInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    commandInfo.commandPool = gpu->commandPool.get();
+    commandInfo.commandPool = commandPool.get();
     commandInfo.commandBufferCount = 1;
-    result = gpu->vk.AllocateCommandBuffers(host.device, &commandInfo, &gpu->commands);
-    if (result != VK_SUCCESS) return gpu->failure("vkAllocateCommandBuffers", result);
+    result = vk.AllocateCommandBuffers(host.device, &commandInfo, &commands);
+    if (result != VK_SUCCESS) return failure("vkAllocateCommandBuffers", result);
     // Last: the scan makes a pipeline and buffers with all that stands above.
     if (const char* wanted = std::getenv("SCONCE_NAN_SCAN"); wanted && std::strcmp(wanted, "1") == 0)
     {
-        auto scan = NanScan::create(*gpu);
-        if (!scan) return scan.error();
-        gpu->scan = std::move(*scan);
+        auto made = NanScan::create(*this);
+        if (!made) return made.error();
+        scan = std::move(*made);
     }
-    return gpu;
+    return success();
 }
 
 Gpu::Gpu(const HostVulkan& lent) : host(lent) {}
@@ -139,9 +157,9 @@ Result<Buffer> Gpu::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags extraUsage
     if (result != VK_SUCCESS) return failure("vkCreateBuffer", result);
     VkMemoryRequirements needs;
     vk.GetBufferMemoryRequirements(host.device, made.buffer.get(), &needs);
-    auto piece = pool->allocate(needs, use, true, what);
+    auto piece = memory().allocate(needs, use, true, what);
     if (!piece) return piece.error();
-    made.memory = OwnedPiece(*pool, *piece);
+    made.memory = OwnedPiece(memory(), *piece);
     result = vk.BindBufferMemory(host.device, made.buffer.get(), made.memory.piece().memory(), made.memory.piece().offset);
     if (result != VK_SUCCESS) return failure("vkBindBufferMemory", result);
     VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
@@ -191,9 +209,9 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
     if (result != VK_SUCCESS) return failure("vkCreateImage", result);
     VkMemoryRequirements needs;
     vk.GetImageMemoryRequirements(host.device, made.image.get(), &needs);
-    auto piece = pool->allocate(needs, MemoryUse::device, false, what);
+    auto piece = memory().allocate(needs, MemoryUse::device, false, what);
     if (!piece) return piece.error();
-    made.memory = OwnedPiece(*pool, *piece);
+    made.memory = OwnedPiece(memory(), *piece);
     result = vk.BindImageMemory(host.device, made.image.get(), made.memory.piece().memory(), made.memory.piece().offset);
     if (result != VK_SUCCESS) return failure("vkBindImageMemory", result);
     if (scan) NanScan::note(made);
@@ -221,9 +239,11 @@ Result<GpuImage> Gpu::makeImage(const ImageDesc& desc, const char* what)
 
 Result<VkDescriptorSetLayout> Gpu::setLayout(std::span<const VkDescriptorSetLayoutBinding> bindings)
 {
+    if (first) return first->setLayout(bindings);
     std::vector<std::array<uint32_t, 4>> key;
     for (const VkDescriptorSetLayoutBinding& one : bindings)
         key.push_back({one.binding, uint32_t(one.descriptorType), one.descriptorCount, one.stageFlags});
+    const std::scoped_lock lock(common);
     if (const auto found = setLayouts.find(key); found != setLayouts.end()) return found->second.get();
     VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     info.bindingCount = uint32_t(bindings.size());
@@ -232,6 +252,18 @@ Result<VkDescriptorSetLayout> Gpu::setLayout(std::span<const VkDescriptorSetLayo
     const VkResult result = made.make(*this, vk.CreateDescriptorSetLayout, host.device, &info, host.allocationCallbacks);
     if (result != VK_SUCCESS) return failure("vkCreateDescriptorSetLayout", result);
     return setLayouts.emplace(std::move(key), std::move(made)).first->second.get();
+}
+
+Result<std::shared_ptr<const void>> Gpu::computePipeline(const std::vector<uint64_t>& key,
+                                                         const std::function<Result<std::shared_ptr<const void>>(Gpu&)>& make)
+{
+    if (first) return first->computePipeline(key, make);
+    const std::scoped_lock lock(common);
+    std::shared_ptr<const void>& known = computePipelines[key];
+    if (known) return known;
+    auto made = make(*this);
+    if (made) known = *made;
+    return made;
 }
 
 Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
@@ -259,7 +291,7 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
     info.pCommandBuffers = &commands;
-    result = vk.QueueSubmit(host.queue, 1, &info, done);
+    result = host.submit ? host.submit(info, done) : vk.QueueSubmit(host.queue, 1, &info, done);
     if (result != VK_SUCCESS) return failure("vkQueueSubmit", result);
     const auto wait = [&] { return vk.WaitForFences(host.device, 1, &done, VK_TRUE, UINT64_MAX); };
     result = wait();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -80,11 +81,14 @@ private:
     const char* name = "";
 };
 
-/// A host's device with its functions, the memory seam and one-shot submits. Everything made from it must go before it.
+/// A host's device with its functions, the memory seam and one-shot submits. Everything made from it must go before it. For one thread at a
+/// time; forThread() makes one for another.
 class Gpu : public std::enable_shared_from_this<Gpu>
 {
 public:
     static Result<std::shared_ptr<Gpu>> create(const HostVulkan& host);
+    /// With memory, layouts and compiled passes in common, which stay for as long as any of them. Errors: outOfMemory, deviceFailure.
+    Result<std::shared_ptr<Gpu>> forThread();
     ~Gpu();
     Gpu(const Gpu&) = delete;
     Gpu& operator=(const Gpu&) = delete;
@@ -95,7 +99,7 @@ public:
     bool timestamps = false; // the queue counts time
     uint32_t raysALane = 1;  // of passes over lists that are made from now on, see raysALane()
 
-    GpuMemory& memory() { return *pool; }
+    GpuMemory& memory() { return *home().pool; }
 
     /// Null unless the environment says SCONCE_NAN_SCAN=1, see runtime/vulkan/nan_scan.h.
     NanScan* nanScan() { return scan.get(); }
@@ -140,22 +144,27 @@ public:
     Result<VkDescriptorSetLayout> setLayout(std::span<const VkDescriptorSetLayoutBinding> bindings);
 
     /// What Pipeline::compute() makes, once for all that is asked for alike, for a driver takes longest for that; it lives as long as this.
-    /// Empty where there is none yet.
-    std::shared_ptr<const void>& computePipeline(const std::vector<uint64_t>& key) { return computePipelines[key]; }
+    /// @param make  of what is to live so long, where there is none yet; other threads that ask wait for it
+    Result<std::shared_ptr<const void>> computePipeline(const std::vector<uint64_t>& key,
+                                                        const std::function<Result<std::shared_ptr<const void>>(Gpu&)>& make);
 
     Error failure(const char* call, VkResult result) const;
 
 private:
     explicit Gpu(const HostVulkan& lent);
+    Gpu& home() { return first ? *first : *this; } // that has what is in common
+    Status makeCommands();
     Status ensureStaging();
     Status makeTexelView(Buffer& buffer, VkFormat format);
-    // The first of these, so that it goes last: staging buffer and scan give their memory back to it.
+    // These go last: staging buffer and scan give their memory back to them.
+    std::shared_ptr<Gpu> first; // of those that have all in common; null: this is the first
     std::unique_ptr<GpuMemory> pool;
     Handle<VkCommandPool, &VulkanFunctions::DestroyCommandPool> commandPool;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     Handle<VkFence, &VulkanFunctions::DestroyFence> fence;
     Buffer staging;
     using SetLayout = Handle<VkDescriptorSetLayout, &VulkanFunctions::DestroyDescriptorSetLayout>;
+    std::mutex common;                                                             // of the next two
     std::map<std::vector<std::array<uint32_t, 4>>, SetLayout> setLayouts;          // by binding, type, count and stages of each
     std::map<std::vector<uint64_t>, std::shared_ptr<const void>> computePipelines; // after the layouts that they must not outlive
     std::unique_ptr<NanScan> scan;

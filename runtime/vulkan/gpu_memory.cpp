@@ -154,7 +154,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
             // The block is given back as if one piece of its whole size were, so that the budget is right again.
             Piece whole{added, 0, size};
             added->free.clear();
-            release(whole);
+            giveBack(whole);
             return refused("mapping");
         }
         added->mapped = static_cast<std::byte*>(pointer);
@@ -167,6 +167,7 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
     const int type = memoryType(needs.memoryTypeBits, use);
     if (type < 0) return Error{ErrorCode::missingFeature, fmt::format("The device has no memory type for {}; choose another device", what)};
     const bool mapped = use != MemoryUse::device;
+    const std::scoped_lock lock(mutex);
     // Memory types, buffers or images, mapped or not: blocks are kept apart by all three.
     if (needs.size < kLargeBytes)
     {
@@ -184,9 +185,27 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
     return Piece{*block, *(*block)->take(needs.size, needs.alignment), needs.size};
 }
 
+uint64_t GpuMemory::used() const
+{
+    const std::scoped_lock lock(mutex);
+    return heldBytes;
+}
+
+uint64_t GpuMemory::peak() const
+{
+    const std::scoped_lock lock(mutex);
+    return peakBytes;
+}
+
 void GpuMemory::release(Piece& piece)
 {
     if (!piece.block) return;
+    const std::scoped_lock lock(mutex);
+    giveBack(piece);
+}
+
+void GpuMemory::giveBack(Piece& piece)
+{
     piece.block->give(piece.offset, piece.size);
     if (piece.block->empty())
     {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <list>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,8 @@ enum class MemoryUse
 };
 
 /// The one seam through which all device memory is taken: blocks of 64 MiB cut first-fit, large resources alone. It keeps the budget
-/// itself, since software drivers hand out more than they have and a refusal must come before the machine swaps.
+/// itself, since software drivers hand out more than they have and a refusal must come before the machine swaps. Safe from many threads:
+/// what a thread loads another may let go of.
 class GpuMemory
 {
 public:
@@ -45,17 +47,19 @@ public:
     Result<Piece> allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear, const char* what);
     void release(Piece& piece);
 
-    uint64_t used() const { return heldBytes; } // bytes taken from the driver
-    uint64_t peak() const { return peakBytes; }
+    uint64_t used() const; // bytes taken from the driver
+    uint64_t peak() const;
     uint64_t budget() const { return budgetBytes; }
 
 private:
     Result<Block*> addBlock(VkDeviceSize size, uint32_t type, bool linear, bool mapped, VkDeviceSize asked, const char* what);
+    void giveBack(Piece& piece);
     int memoryType(uint32_t allowed, MemoryUse use) const;
 
     const HostVulkan& host;
     const VulkanFunctions& vk;
     VkPhysicalDeviceMemoryProperties types{};
+    mutable std::mutex mutex; // of all that follows
     std::list<Block> blocks;
     uint64_t heldBytes = 0;
     uint64_t peakBytes = 0;

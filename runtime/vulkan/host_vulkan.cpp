@@ -36,7 +36,21 @@ VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEX
     return VK_FALSE;
 }
 
-/// The features the library needs, in one chain that is asked, checked and enabled.
+struct NamedFeature
+{
+    VkBool32* value;
+    const char* name;
+};
+/// What the library needs.
+std::vector<NamedFeature> neededOf(VkPhysicalDeviceVulkan12Features& v12, VkPhysicalDeviceVulkan13Features& v13)
+{
+    return {{&v12.bufferDeviceAddress, "bufferDeviceAddress"},
+            {&v12.scalarBlockLayout, "scalarBlockLayout"},
+            {&v13.dynamicRendering, "dynamicRendering"},
+            {&v13.synchronization2, "synchronization2"}};
+}
+
+/// Features in one chain, that is asked for or enabled.
 struct FeatureChain
 {
     VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -46,19 +60,6 @@ struct FeatureChain
     FeatureChain() = default;
     FeatureChain(const FeatureChain&) = delete;
     FeatureChain& operator=(const FeatureChain&) = delete;
-
-    struct Named
-    {
-        VkBool32* value;
-        const char* name;
-    };
-    std::vector<Named> needed()
-    {
-        return {{&v12.bufferDeviceAddress, "bufferDeviceAddress"},
-                {&v12.scalarBlockLayout, "scalarBlockLayout"},
-                {&v13.dynamicRendering, "dynamicRendering"},
-                {&v13.synchronization2, "synchronization2"}};
-    }
 };
 
 const char* kindName(VkPhysicalDeviceType type)
@@ -213,6 +214,11 @@ Result<VkPhysicalDevice> chooseDevice(VkInstance instance, const std::string& wa
 
 } // namespace
 
+void requireFeatures(VkPhysicalDeviceVulkan12Features& v12, VkPhysicalDeviceVulkan13Features& v13)
+{
+    for (const NamedFeature& feature : neededOf(v12, v13)) *feature.value = VK_TRUE;
+}
+
 std::vector<std::string> missingFeatures(PFN_vkGetInstanceProcAddr getProc, VkInstance instance, VkPhysicalDevice device)
 {
     std::vector<std::string> missing;
@@ -227,7 +233,7 @@ std::vector<std::string> missingFeatures(PFN_vkGetInstanceProcAddr getProc, VkIn
     }
     FeatureChain features;
     reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(getProc(instance, "vkGetPhysicalDeviceFeatures2"))(device, &features.all);
-    for (const auto& feature : features.needed())
+    for (const NamedFeature& feature : neededOf(features.v12, features.v13))
         if (!*feature.value) missing.push_back(feature.name);
     return missing;
 }
@@ -339,7 +345,7 @@ Result<std::unique_ptr<MadeDevice>> makeDevice(const OwnDevice::Desc& desc, std:
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
     FeatureChain features;
-    for (const auto& feature : features.needed()) *feature.value = VK_TRUE;
+    requireFeatures(features.v12, features.v13);
     features.v13.pNext = extensionFeatures;
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.all};
     info.queueCreateInfoCount = 1;

@@ -15,8 +15,7 @@ namespace sconce
 {
 
 /// What a host lends: its own Vulkan objects, which must outlive everything made from them. The device needs Vulkan 1.3 with the features
-/// that missingFeatures() checks, enabled; the queue family needs graphics and compute. Calls on one HostVulkan are the host's to
-/// serialise.
+/// that missingFeatures() checks, enabled; the queue family needs graphics and compute.
 struct HostVulkan
 {
     VkInstance instance = VK_NULL_HANDLE;
@@ -29,13 +28,19 @@ struct HostVulkan
     VkPipelineCache pipelineCache = VK_NULL_HANDLE; // what compiled pipelines are looked up in and added to; without one a driver's own
     uint64_t memoryBudget = 0;                      // bytes of device memory the library may hold; 0: 80 % of the largest device-local heap
 
-    // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called.
+    // Where other threads use the queue, too: submits under the host's lock. Else vkQueueSubmit is called as it is.
+    std::function<VkResult(const VkSubmitInfo&, VkFence)> submit;
+
+    // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called. Never two at a time.
     std::function<VkResult(const VkMemoryAllocateInfo&, VkDeviceMemory&)> allocateMemory;
     std::function<void(VkDeviceMemory)> freeMemory;
 };
 
 /// Names of what a device lacks to run the library, empty when it can.
 std::vector<std::string> missingFeatures(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance, VkPhysicalDevice device);
+
+/// Switches the library's features on in what a host creates its device with; the rest stays as the host has set it.
+void requireFeatures(VkPhysicalDeviceVulkan12Features& v12, VkPhysicalDeviceVulkan13Features& v13);
 
 /// The device and instance of a program that has none of its own.
 class OwnDevice

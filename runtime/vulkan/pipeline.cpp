@@ -118,7 +118,8 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, const Mod
 
 } // namespace
 
-Status Pipeline::makeLayout(Made& of, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes) const
+Status Pipeline::makeLayout(const Gpu& gpu, Made& of, VkShaderStageFlags stages, std::span<const VkDescriptorSetLayout> sets,
+                            uint32_t pushBytes)
 {
     const VkPushConstantRange range{stages, 0, pushBytes};
     VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
@@ -126,8 +127,8 @@ Status Pipeline::makeLayout(Made& of, std::span<const VkDescriptorSetLayout> set
     info.pSetLayouts = sets.data();
     info.pushConstantRangeCount = pushBytes > 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
-    const VkResult result = of.layout.make(*gpu, gpu->vk.CreatePipelineLayout, gpu->host.device, &info, gpu->host.allocationCallbacks);
-    if (result != VK_SUCCESS) return gpu->failure("vkCreatePipelineLayout", result);
+    const VkResult result = of.layout.make(gpu, gpu.vk.CreatePipelineLayout, gpu.host.device, &info, gpu.host.allocationCallbacks);
+    if (result != VK_SUCCESS) return gpu.failure("vkCreatePipelineLayout", result);
     return success();
 }
 
@@ -140,26 +141,25 @@ Result<Pipeline> Pipeline::compute(Gpu& gpu, Spirv shader, std::span<const VkDes
     std::vector<uint64_t> key = {XXH3_64bits(shader.data(), shader.size_bytes()), shader.size(), pushBytes, flags, sets.size()};
     for (const VkDescriptorSetLayout set : sets) key.push_back(reinterpret_cast<uint64_t>(set));
     for (const ShaderConstant& constant : constants) key.push_back(uint64_t(constant.id) << 32 | constant.value);
-    std::shared_ptr<const void>& known = gpu.computePipeline(key);
-    if (known)
+    const auto make = [&](Gpu& home) -> Result<std::shared_ptr<const void>>
     {
-        pipeline.made = std::static_pointer_cast<const Made>(known);
-        return pipeline;
-    }
-    const auto made = std::make_shared<Made>();
-    if (auto status = pipeline.makeLayout(*made, sets, pushBytes); !status) return status.error();
-    const Module module(gpu, shader);
-    if (module.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", module.result);
-    const Specialization specialization(constants);
-    VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.flags = flags;
-    info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
-    info.layout = made->layout.get();
-    const VkResult result = made->pipeline.make(gpu, gpu.vk.CreateComputePipelines, gpu.host.device, gpu.host.pipelineCache, 1, &info,
-                                                gpu.host.allocationCallbacks);
-    if (result != VK_SUCCESS) return gpu.failure("vkCreateComputePipelines", result);
-    pipeline.made = made;
-    known = made;
+        const auto made = std::make_shared<Made>();
+        if (auto status = makeLayout(home, *made, pipeline.stages, sets, pushBytes); !status) return status.error();
+        const Module module(home, shader);
+        if (module.result != VK_SUCCESS) return home.failure("vkCreateShaderModule", module.result);
+        const Specialization specialization(constants);
+        VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+        info.flags = flags;
+        info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
+        info.layout = made->layout.get();
+        const VkResult result = made->pipeline.make(home, home.vk.CreateComputePipelines, home.host.device, home.host.pipelineCache, 1,
+                                                    &info, home.host.allocationCallbacks);
+        if (result != VK_SUCCESS) return home.failure("vkCreateComputePipelines", result);
+        return std::shared_ptr<const void>(made);
+    };
+    auto made = gpu.computePipeline(key, make);
+    if (!made) return made.error();
+    pipeline.made = std::static_pointer_cast<const Made>(*made);
     return pipeline;
 }
 
@@ -170,7 +170,7 @@ Result<Pipeline> Pipeline::graphics(Gpu& gpu, const Graphics& desc)
     pipeline.bindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     pipeline.stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     const auto made = std::make_shared<Made>();
-    if (auto status = pipeline.makeLayout(*made, desc.sets, desc.pushBytes); !status) return status.error();
+    if (auto status = makeLayout(gpu, *made, pipeline.stages, desc.sets, desc.pushBytes); !status) return status.error();
     const Module vertex(gpu, desc.vertex), fragment(gpu, desc.fragment);
     if (vertex.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", vertex.result);
     if (fragment.result != VK_SUCCESS) return gpu.failure("vkCreateShaderModule", fragment.result);

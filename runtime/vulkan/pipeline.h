@@ -94,7 +94,8 @@ private:
         Handle<VkPipelineLayout, &VulkanFunctions::DestroyPipelineLayout> layout;
         Handle<VkPipeline, &VulkanFunctions::DestroyPipeline> pipeline;
     };
-    Status makeLayout(Made& of, std::span<const VkDescriptorSetLayout> sets, uint32_t pushBytes) const;
+    static Status makeLayout(const Gpu& gpu, Made& of, VkShaderStageFlags stages, std::span<const VkDescriptorSetLayout> sets,
+                             uint32_t pushBytes);
     Gpu* gpu = nullptr;
     std::shared_ptr<const Made> made;
     VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;

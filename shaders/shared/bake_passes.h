@@ -9,7 +9,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BakeWords { 
 #endif
 SCONCE_STRUCTS_BEGIN
 
-const uint kBakeSurfaceBinding = 0u; // layout: bake_gbuffer.frag
+const uint kBakeSurfaceBinding = 0u; // layout: probe_face.glsl
 const uint kBakeDepthBinding = 1u;
 
 /// What a bounce needs of a texel of surface light: means over the distance texels under it that lie on its surface.

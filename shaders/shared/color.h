@@ -71,10 +71,10 @@ SCONCE_PURE vec3 unpackSharedExponent(uint w)
     return scale * vec3(real(w & 511u), real((w >> 9) & 511u), real((w >> 18) & 511u));
 }
 
-#endif
-
 /// Reflectance of 5:6:5 bits.
 SCONCE_PURE vec3 unpackAlbedo(uint bits)
 {
     return vec3(real(bits & 31u) / real(31.0), real((bits >> 5) & 63u) / real(63.0), real((bits >> 11) & 31u) / real(31.0));
 }
+
+#endif

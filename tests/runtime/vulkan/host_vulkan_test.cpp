@@ -23,6 +23,20 @@ TEST(OwnDevice, UnknownNameListsTheDevices)
     EXPECT_NE(refused.error().message.find(all->front().name), std::string::npos);
 }
 
+/// What a host has switched on stays, and nothing else is.
+TEST(RequireFeatures, AddsToWhatTheHostHas)
+{
+    VkPhysicalDeviceVulkan12Features v12{};
+    VkPhysicalDeviceVulkan13Features v13{};
+    v13.pNext = &v12;
+    v12.descriptorIndexing = v13.maintenance4 = VK_TRUE;
+    requireFeatures(v12, v13);
+    EXPECT_TRUE(v12.descriptorIndexing && v12.bufferDeviceAddress && v12.scalarBlockLayout);
+    EXPECT_TRUE(v13.maintenance4 && v13.dynamicRendering && v13.synchronization2);
+    EXPECT_FALSE(v12.shaderFloat16 || v13.robustImageAccess);
+    EXPECT_EQ(v13.pNext, &v12);
+}
+
 TEST(OwnDevice, IsOneThatLacksNothing)
 {
     const auto own = OwnDevice::create();

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -97,6 +98,28 @@ TEST(Pipeline, IsMadeOnceForAllThatIsAskedForAlike)
     EXPECT_EQ(std::memcmp(first.data(), again.data(), sizeof(gpu::RayHit)), 0);
     tracedBy(gpu::kOrderNearestLine, other);
     EXPECT_EQ(cachesAsked.size(), made + 1) << "another constant, another pass";
+}
+
+// A thread that loads fields and one that draws them ask for the same passes, and either may be gone before the other.
+TEST(Pipeline, IsMadeOnceForAllThreads)
+{
+    ValidatedDevice device;
+    auto first = *Gpu::create(notingHost(device));
+    auto other = *first->forThread();
+    const std::vector<VkDescriptorSetLayoutBinding> bindings = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_ALL, nullptr}};
+    EXPECT_EQ(*first->setLayout(bindings), *other->setLayout(bindings));
+    EXPECT_EQ(&first->memory(), &other->memory());
+    const gpu::Ray ray{{0.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    std::vector<gpu::RayHit> hits(1);
+    std::optional<LightField> field = *makeLightField(*first, testing_support::smallField());
+    ASSERT_TRUE(makeRayTracer(*other, *field)->trace(std::span(&ray, 1), hits));
+    const size_t made = cachesAsked.size();
+    EXPECT_GT(made, 0u);
+    ASSERT_TRUE(makeRayTracer(*first, *field)->trace(std::span(&ray, 1), hits));
+    EXPECT_EQ(cachesAsked.size(), made);
+    first.reset();
+    ASSERT_TRUE(makeRayTracer(*other, *field)->trace(std::span(&ray, 1), hits));
+    EXPECT_EQ(cachesAsked.size(), made);
 }
 
 } // namespace
