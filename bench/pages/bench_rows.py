@@ -17,6 +17,7 @@
     bench/pages/sparse_table.sh                                 bench/results/edges_and_points.json and cached_frames.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
     python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote; notes may follow
+    python3 bench/pages/bench_rows.py surfaces ROWS.txt          bench/results/surface_light.json, of what surface_table.sh printed
     bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
@@ -605,6 +606,19 @@ def field_paths(arguments):
            "trace_s: of our rays on the device; s: with what the host does between them; theirs: Embree's path tracer on the same cores, with draws of emitters, which ours has none of; frame: the default's, of the field of all bounces"], rows)
 
 
+def surfaces(arguments):
+    """Of the lines that surface_table.sh prints; scenes that they lack keep their rows, and the commit that those were measured with."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    before = json.loads((ROOT / "bench/results/surface_light.json").read_text())
+    others = {key: row | {"commit": row.get("commit", before["commit"])} for key, row in before["rows"].items() if key not in rows}
+    notes = ["relMSE without the reference's noise, FLIP and mean over the reference's of the layer diffuse_indirect, of pixels in which both see the same surface; glossy: of glossy_indirect",
+             "ms of one frame of 960x540: gathering, surface light, area light, diffuse filter and lamps; alone: of diffuse light without rough reflections", "kib: of a light field, a probe"]
+    if others:
+        notes.append(f"measured before, of the commit in the row: {', '.join(row['label'].rpartition(',')[0] for row in others.values())}; their relMSE may have the reference's noise in it")
+    write("surface_light.json", "Diffuse light read at surfaces against irradiance with shadowed samples and a filter; 320x180, maps of 256, at most 8 bounces, against 512 paths a pixel "
+          "(Sponza: 2,048) and 8 bounces", ["bench/pages/surface_table.sh"], notes, {key: rows.get(key) or others[key] for key in before["rows"]})
+
+
 def day(arguments):
     """Of the lines that day_sheet.sh prints, and over them least and most."""
     rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
@@ -621,7 +635,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "day": day, "fly": fly, "flights": flights}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])
