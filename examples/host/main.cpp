@@ -21,7 +21,7 @@ constexpr const char* kUsage = R"(usage: host SCENE.gltf|SCENE.glb FIELD.sconce 
   --camera N      camera of the scene, from 0 (default: 0)
   --size WxH      pixels (default: 640x360)
   --frames N      frames that are drawn, 1 to 1000; more than one are filtered over time (default: 1)
-  --probe X,Y,Z   a place to see the scene from, once for each: the field is baked first, by what this host draws there
+  --probe X,Y,Z   a place to see the scene from, once for each: FIELD is baked first, by what this host draws there
   --left-handed   a world with z turned round and a camera that looks along +z; the picture is the same
   --validation    with the validation layer, and Sconce's look at its inputs; what they find is a failure
 )";

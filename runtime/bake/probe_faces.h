@@ -18,7 +18,7 @@ inline constexpr VkFormat kProbeDepthFormat = VK_FORMAT_D32_SFLOAT;
 struct ProbeFace
 {
     mat4 clipFromRelative; // takes (position - centre, 1) in the world's metres; depth is then 1 at the near plane and 0 infinitely far
-    vec3 centre;           // of the probe, world, metres: subtracted first, so that far from the origin no bits are lost
+    vec3 centre;           // world, metres, off a surface that it stood on; subtracted first: far from the origin no bits are lost
     uint32_t probe = 0;    // its place in the list that is baked
     uint32_t face = 0;     // 0 to 5: +x, -x, +y, -y, +z, -z
     bool mirrored = false; // the face is seen in a mirror, as every second is: front faces turn the other way

@@ -143,7 +143,7 @@ Result<GpuMemory::Block*> GpuMemory::addBlock(VkDeviceSize size, uint32_t type, 
     block.linear = linear;
     block.free = {{0, size}};
     heldBytes += size;
-    peakBytes = std::max(peakBytes, heldBytes);
+    peakBytes = std::max<uint64_t>(peakBytes, heldBytes);
     blocks.push_back(std::move(block));
     Block* added = &blocks.back();
     if (mapped)
@@ -183,18 +183,6 @@ Result<GpuMemory::Piece> GpuMemory::allocate(const VkMemoryRequirements& needs, 
     auto block = addBlock(shared ? kBlockBytes : needs.size, uint32_t(type), linear, mapped, needs.size, what);
     if (!block) return block.error();
     return Piece{*block, *(*block)->take(needs.size, needs.alignment), needs.size};
-}
-
-uint64_t GpuMemory::used() const
-{
-    const std::scoped_lock lock(mutex);
-    return heldBytes;
-}
-
-uint64_t GpuMemory::peak() const
-{
-    const std::scoped_lock lock(mutex);
-    return peakBytes;
 }
 
 void GpuMemory::release(Piece& piece)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <list>
 #include <mutex>
@@ -47,8 +48,8 @@ public:
     Result<Piece> allocate(const VkMemoryRequirements& needs, MemoryUse use, bool linear, const char* what);
     void release(Piece& piece);
 
-    uint64_t used() const; // bytes taken from the driver
-    uint64_t peak() const;
+    uint64_t used() const { return heldBytes; } // bytes taken from the driver; a host's allocator may ask
+    uint64_t peak() const { return peakBytes; }
     uint64_t budget() const { return budgetBytes; }
 
 private:
@@ -59,10 +60,10 @@ private:
     const HostVulkan& host;
     const VulkanFunctions& vk;
     VkPhysicalDeviceMemoryProperties types{};
-    mutable std::mutex mutex; // of all that follows
+    std::mutex mutex; // of who changes what follows
     std::list<Block> blocks;
-    uint64_t heldBytes = 0;
-    uint64_t peakBytes = 0;
+    std::atomic<uint64_t> heldBytes = 0;
+    std::atomic<uint64_t> peakBytes = 0;
     uint64_t budgetBytes = 0;
 };
 

@@ -31,7 +31,8 @@ struct HostVulkan
     // Where other threads use the queue, too: submits under the host's lock. Else vkQueueSubmit is called as it is.
     std::function<VkResult(const VkSubmitInfo&, VkFence)> submit;
 
-    // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called. Never two at a time.
+    // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called. By one
+    // Device and those of its forThread() never two at a time; a bake has memory, and a budget, of its own.
     std::function<VkResult(const VkMemoryAllocateInfo&, VkDeviceMemory&)> allocateMemory;
     std::function<void(VkDeviceMemory)> freeMemory;
 };

@@ -38,7 +38,7 @@ bool sameBits(const std::vector<gpu::RayHit>& a, const std::vector<gpu::RayHit>&
     return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
-BakeSettings settingsOf(const ExactRays& rays)
+Result<FieldData> bakedBox(const HostVulkan& host, const ExactRays& rays)
 {
     BakeSettings settings;
     settings.resolution = 64;
@@ -47,13 +47,8 @@ BakeSettings settingsOf(const ExactRays& rays)
     settings.surfaceRays = 8;
     settings.rays = &rays;
     settings.octree.voxels = 16;
-    return settings;
-}
-
-Result<FieldData> bakedBox(const HostVulkan& host, const ExactRays& rays)
-{
     BakeReport report;
-    return bakeLightField(host, rays.scene(), std::span(kCornellProbes).first(3), settingsOf(rays), {}, report);
+    return bakeLightField(host, rays.scene(), std::span(kCornellProbes).first(3), settings, {}, report);
 }
 
 /// Two devices share nothing: each bakes on a thread of its own, with the same rays, what one alone does.
@@ -137,8 +132,10 @@ TEST(Threads, FieldsLoadWhileOthersAreTraced)
             done = true;
         });
     int traced = 0, others = 0;
-    while (!done)
+    // Once more after the last: this thread may have had no turn before.
+    for (bool last = false; !last;)
     {
+        last = done;
         std::optional<LightField> field;
         {
             const std::scoped_lock lock(handing);
