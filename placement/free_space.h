@@ -22,8 +22,8 @@ struct OpenSpace
 {
     // Metres above ground that a viewer stands on, out to the scene's box; 0: bare ground doesn't count; none: kStanding where a seed is
     // on open ground and kMostGroundLeftOut of the ground that seeds reach would be left out.
-    std::optional<float> ground;
-    std::optional<Bounds> box;        // all free space in it that is reached, and nothing else
+    std::optional<float> ground = {};
+    std::optional<Bounds> box = {};   // all free space in it that is reached, and nothing else
     const Visibility* walk = nullptr; // a mesh that one can walk on, in place of all ground that isn't steep; must outlive the search
 };
 

@@ -51,14 +51,17 @@ struct Gatherer : LightFieldTwin<float>
     float gap;
     std::span<const glm::vec3> palette;
     std::span<const float> straight; // TriangleGather::straight
-    std::span<uint32_t> links;       // of the probe
-    size_t slot = 0;                 // of the texel in it
-    vec3 brought{0.0f};              // light of emitters and sky that the rays have brought by reflection, summed
+    const EmitterPatches& patches;
+    std::span<uint32_t> links;  // of the probe
+    size_t slot = 0;            // of the texel in it
+    std::vector<float> running; // sums of the emitters' weights, up to each and with it
+    vec3 brought{0.0f};         // light of emitters and sky that the rays have brought by reflection, summed
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
-             std::span<const glm::vec3> tints, std::span<const float> ofMaterials, std::span<uint32_t> into)
+             std::span<const glm::vec3> tints, std::span<const float> ofMaterials, const EmitterPatches& ofEmitters,
+             std::span<uint32_t> into)
         : LightFieldTwin<float>(data, {}), triangles(rays), lightsHeader(list.header), lights(list.lights), emitters(list.emitters),
-          desc(wanted), gap(offset), palette(tints), straight(ofMaterials), links(into)
+          desc(wanted), gap(offset), palette(tints), straight(ofMaterials), patches(ofEmitters), links(into)
     {
     }
 
@@ -474,6 +477,19 @@ struct Gatherer : LightFieldTwin<float>
     static constexpr float kOffDistance = 0.01f; // of the distance, that a packed texel may be off by where its surface is steep
 
 #include "shaders/shared/surface_gather.h"
+
+    // What surface_gather.h asks: the sums of weights are kept from one question to the other.
+    real weighEmitters(vec3 point, vec3 normal, vec3 plane, real grazing)
+    {
+        patches.weigh(point, normal, plane, grazing, kNearPatch, running);
+        float total = 0.0f;
+        for (float& weight : running) weight = total += weight;
+        return total;
+    }
+    real passedBy(uint i, real, vec3, vec3, vec3, real) const
+    {
+        return running[i - lightsHeader.deltaCount];
+    }
 };
 
 } // namespace
@@ -532,7 +548,8 @@ std::vector<vec3> metalTints(const Scene& scene)
 TriangleGather::TriangleGather(const ExactRays& rays, const FieldData& data, std::span<const gpu::SurfaceTexel> known,
                                const LightList& list, const Desc& wanted)
     : triangles(&rays), field(&data), texels(known), lights(&list), desc(wanted), gap(rayOffset(rays.scene())),
-      palette(metalTints(rays.scene())), straight(straightShares(rays.scene()))
+      palette(metalTints(rays.scene())), straight(straightShares(rays.scene())),
+      patches(std::span(list.lights).subspan(list.header.deltaCount, list.header.emitterCount))
 {
     for (size_t i = 0; i < grazings.size(); ++i) grazings[i] = twin::Gatherer::grazingOfRoughness(float(i) / float(grazings.size() - 1));
     assert(desc.rays > 0 && desc.shadowRays <= gpu::kMostShadowRays && data.info.surfaceSize > 0);
@@ -551,7 +568,7 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
     parallelFor(size_t(6) * side,
                 [&](size_t row)
                 {
-                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, target.links);
+                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, patches, target.links);
                     const int face = int(row / side), y = int(row % side);
                     for (int x = 0; x < int(side); ++x)
                     {
@@ -594,7 +611,7 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
 {
     constexpr uint32_t kSide = 1u << gpu::kFineLog;
     std::vector<uint32_t> links(desc.rays);
-    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, links);
+    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, patches, links);
     FinePoints found;
     for (uint32_t i = 0; i < found.size(); ++i)
     {
@@ -624,7 +641,7 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
     std::vector<uint32_t> links(rays);
     Desc fewer = desc;
     fewer.rays = rays;
-    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, links);
+    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, patches, links);
     const auto got = text.gatherAt(point, normal, normal, sample, grazing);
     return {got.light,
             text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
@@ -641,7 +658,7 @@ std::vector<uint32_t> TriangleGather::linksAt(vec3 point, vec3 normal, float gra
     std::vector<uint32_t> links(rays);
     Desc fewer = desc;
     fewer.rays = rays;
-    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, links);
+    twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, patches, links);
     text.gatherAt(point, normal, normal, sample, grazing);
     return links;
 }
@@ -660,7 +677,7 @@ TriangleGather::Cells TriangleGather::gatherCells() const
                     for (int facing = 0; facing < 6; ++facing)
                     {
                         const size_t index = 6 * cell + size_t(facing);
-                        twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight,
+                        twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, patches,
                                             std::span(found.links).subspan(index * desc.rays, desc.rays));
                         if (facing == 0) found.places[cell] = text.openPlace(at);
                         if (found.places[cell] == 0) return;
@@ -679,7 +696,7 @@ void TriangleGather::lightCells(const Cells& cells, std::span<const uint32_t> se
     parallelFor(cells.places.size(),
                 [&](size_t cell)
                 {
-                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, {});
+                    twin::Gatherer text(*triangles, *field, *lights, desc, gap, palette, straight, patches, {});
                     uint32_t* const own = &words[gpu::kCellWords * cell];
                     own[6] = cells.places[cell];
                     for (size_t facing = 0; facing < 6; ++facing)

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bake/emitter_patches.h"
 #include "runtime/field/field_data.h"
 #include "runtime/scene/lights.h"
 #include "scene/exact_rays.h"
@@ -96,7 +97,8 @@ private:
     Desc desc;
     float gap; // metres that rays start off their surface
     std::vector<vec3> palette;
-    std::vector<float> straight;       // by material, see straightShares()
+    std::vector<float> straight; // by material, see straightShares()
+    EmitterPatches patches;
     std::array<float, 256> grazings{}; // by roughness
 };
 

@@ -19,19 +19,42 @@ struct EmitterSample
     real cosine; // at the surface, times what is taken of light along it; 0 behind its plane
 };
 
-SCONCE_FN EmitterSample emitterSampleAt(uint i, vec3 point, vec3 normal, vec3 plane, real grazing)
+/// @param from    a patch's place; `facing`: its normal, outward; `area` and `oneSided`: as GpuLight has them
+SCONCE_FN EmitterSample sampleOfPatch(vec3 from, vec3 facing, vec3 radiance, real area, bool oneSided, vec3 point, vec3 normal, vec3 plane, real grazing)
 {
     EmitterSample s;
-    vec3 away = vec3(lights[i].position) - point;
+    vec3 away = from - point;
     real d2 = max(dot(away, away), real(1e-14));
     s.distance = sqrt(d2);
     s.toLight = away / s.distance;
-    s.irradiance = vec3(lights[i].intensity) * patchAttenuation(-dot(s.toLight, vec3(lights[i].direction)), d2, real(lights[i].area), discOf(real(lights[i].area)),
-                                                                     lights[i].innerCone > 0.0f);
-    s.cosine = dot(plane, s.toLight) > real(0.0) && !isNearPatch(d2, real(lights[i].area)) ? max(dot(normal, s.toLight), real(0.0)) : real(0.0);
+    s.irradiance = radiance * patchAttenuation(-dot(s.toLight, facing), d2, area, discOf(area), oneSided);
+    s.cosine = dot(plane, s.toLight) > real(0.0) && !isNearPatch(d2, area) ? max(dot(normal, s.toLight), real(0.0)) : real(0.0);
     s.cosine *= takenAlong(s.cosine, grazing);
     return s;
 }
+
+SCONCE_FN EmitterSample emitterSampleAt(uint i, vec3 point, vec3 normal, vec3 plane, real grazing)
+{
+    return sampleOfPatch(vec3(lights[i].position), vec3(lights[i].direction), vec3(lights[i].intensity), real(lights[i].area), lights[i].innerCone > 0.0f,
+                         point, normal, plane, grazing);
+}
+
+/// What a sample would give unshadowed, to draw by.
+SCONCE_FN real weightOf(SCONCE_IN(EmitterSample) s) { return s.cosine * luminance(s.irradiance); }
+
+#ifndef __cplusplus
+/// Sum of the weights of all patches; `passedBy`: of those up to one and with it, from the sum before. The host keeps them from one to the other.
+real weighEmitters(vec3 point, vec3 normal, vec3 plane, real grazing)
+{
+    real total = 0.0;
+    for (uint i = 0; i < lightsHeader.emitterCount; ++i) total += weightOf(emitterSampleAt(lightsHeader.deltaCount + i, point, normal, plane, grazing));
+    return total;
+}
+real passedBy(uint i, real before, vec3 point, vec3 normal, vec3 plane, real grazing)
+{
+    return before + weightOf(emitterSampleAt(i, point, normal, plane, grazing));
+}
+#endif
 
 struct Gathered
 {
@@ -51,12 +74,7 @@ SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, v
 {
     uint begin = lightsHeader.deltaCount;
     uint end = begin + lightsHeader.emitterCount;
-    real total = real(0.0);
-    for (uint i = begin; i < end; ++i)
-    {
-        EmitterSample s = emitterSampleAt(i, point, normal, plane, grazing);
-        total += s.cosine * luminance(s.irradiance);
-    }
+    real total = weighEmitters(point, normal, plane, grazing);
     if (!(total > real(0.0))) return;
     uint drawn[kMostShadowRays];
     uint count = 0u;
@@ -65,8 +83,7 @@ SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, v
     real passed = real(0.0);
     for (uint i = begin; i < end; ++i)
     {
-        EmitterSample s = emitterSampleAt(i, point, normal, plane, grazing);
-        passed += s.cosine * luminance(s.irradiance);
+        passed = passedBy(i, passed, point, normal, plane, grazing);
         for (; passed > next && count < shadowRays(); next += each) drawn[count++] = i;
     }
     vec3 sum = vec3(real(0.0));

@@ -20,7 +20,7 @@ struct CommandLimits
 {
     /// Of all its threads together: a busy machine doesn't use it up. What hangs without computing is ended by ctest's limit.
     double processorSeconds = 600.0;
-    std::string interruptWhen; // it gets SIGINT as soon as its stderr holds this; empty: never
+    std::string interruptWhen = {}; // it gets SIGINT as soon as its stderr holds this; empty: never
 };
 
 /// Runs the `sconce` command of this build under the Vulkan validation layer, whose messages fail the test.

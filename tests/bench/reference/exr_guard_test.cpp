@@ -106,7 +106,10 @@ TEST(ExrGuard, NoChangedByteOfAHeaderEndsTheProgram)
         for (const char flip : {char(1), char(0x80)})
         {
             testing_support::writeText(folder / "a.exr", with(good, at, char(good[at] ^ flip)));
-            if (const auto read = readExr(folder / "a.exr"); !read) EXPECT_NE(read.error().message.find("a.exr"), std::string::npos);
+            if (const auto read = readExr(folder / "a.exr"); !read)
+            {
+                EXPECT_NE(read.error().message.find("a.exr"), std::string::npos);
+            }
         }
 }
 

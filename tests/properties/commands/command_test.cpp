@@ -274,7 +274,10 @@ TEST(Command, DoctorListsDevices)
         usable = usable || device.at("usable").get<bool>();
         EXPECT_EQ(device.at("back_ends").empty(), !device.at("usable").get<bool>());
         for (const json& form : device.at("back_ends"))
-            if (form.at("of") == "lists of rays" && device.at("kind") == "software") EXPECT_EQ(form.at("taken"), "a ray a lane");
+            if (form.at("of") == "lists of rays" && device.at("kind") == "software")
+            {
+                EXPECT_EQ(form.at("taken"), "a ray a lane");
+            }
     }
     EXPECT_EQ(result.exit, usable ? 0 : 4);
     const std::string said = sconceCommand({"doctor"}).out;
