@@ -129,8 +129,8 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.take(*plan);
     BakeReport report;
     const auto field = desc.groups.empty() && desc.liveLinks == 0 && desc.lit
-                           ? bakeLightField(device.gpu().host, capped, probes, settings, progress, report)
-                           : bakeLightGroups(device.gpu().host, capped, probes, settings, desc.groups, progress, report);
+                           ? bakeLightField(device.gpu(), capped, probes, settings, progress, report)
+                           : bakeLightGroups(device.gpu(), capped, probes, settings, desc.groups, progress, report);
     if (!field) return field.error();
     return saveField(*field, file);
 }

@@ -386,8 +386,9 @@ struct BakeDesc
     std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked
 };
 
-/// Bakes a scene at given probes on the host's device and writes the field to a file, whole or not at all. Submits and waits. Same input,
-/// same driver: same bytes.
+/// Bakes a scene at given probes on the host's device and writes the field to a file, whole or not at all. Submits and waits: on a thread
+/// beside one that draws it is given a Device::forThread(). What it takes of device memory counts towards the device's budget, with all
+/// else that is held. Same input, same driver: same bytes.
 /// @param probes  world, metres; 1 to 65,535
 /// Errors: badArgument (settings, probes: named), badInput (scene; with rays, drawn faces that show another world), outOfMemory (with the
 /// numbers), deviceFailure, fileError, cancelled.

@@ -10,7 +10,7 @@
 #include "runtime/field/light_field_file.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/content_key.h"
-#include "runtime/vulkan/host_vulkan.h"
+#include "runtime/vulkan/gpu.h"
 #include "scene/scene_check.h"
 #include "scene/triangle_rays.h"
 #include "tools/bake_command.h"
@@ -29,6 +29,7 @@ struct Asked
     ProbeSet set;
     Scene scene;
     std::optional<OwnDevice> device;
+    std::shared_ptr<Gpu> gpu; // of it
     std::vector<LightGroupDesc> groups;
     std::vector<vec3> positions;
     std::optional<TriangleRays> rays;
@@ -54,6 +55,9 @@ Status load(const BakeOptions& options, const Context& context, Asked& asked)
     asked.set = std::move(*set);
     asked.scene = std::move(*scene);
     asked.device.emplace(std::move(*device));
+    auto gpu = Gpu::create(asked.device->host());
+    if (!gpu) return gpu.error();
+    asked.gpu = std::move(*gpu);
     asked.apart = (!groups->empty() && options.dims.empty()) || options.settings.liveLinks > 0 || !options.settings.lit;
     if (options.dims.empty()) asked.groups = std::move(*groups);
     // The bake knows positions alone: how a probe came to be where it is makes no difference to its light.
@@ -111,14 +115,14 @@ uint64_t contentOf(const Asked& asked)
 
 Result<FieldData> bakeField(Asked& asked, const Context& context, BakeReport& report)
 {
-    const HostVulkan& host = asked.device->host();
+    Gpu& gpu = *asked.gpu;
     const Progress progress = consoleProgress(context);
-    if (asked.apart) return bakeLightGroups(host, asked.scene, asked.positions, asked.settings, asked.groups, progress, report);
-    if (!asked.lends) return bakeLightField(host, asked.scene, asked.positions, asked.settings, progress, report);
-    const Result<FieldData> light = bakeLightField(host, asked.scene, asked.positions, lendingBake(asked.settings), progress, report);
+    if (asked.apart) return bakeLightGroups(gpu, asked.scene, asked.positions, asked.settings, asked.groups, progress, report);
+    if (!asked.lends) return bakeLightField(gpu, asked.scene, asked.positions, asked.settings, progress, report);
+    const Result<FieldData> light = bakeLightField(gpu, asked.scene, asked.positions, lendingBake(asked.settings), progress, report);
     if (!light) return light;
     asked.settings.light = &*light;
-    auto field = bakeLightField(host, asked.scene, asked.positions, asked.settings, progress, report);
+    auto field = bakeLightField(gpu, asked.scene, asked.positions, asked.settings, progress, report);
     asked.settings.light = nullptr;
     return field;
 }
@@ -126,11 +130,11 @@ Result<FieldData> bakeField(Asked& asked, const Context& context, BakeReport& re
 int runShard(const Asked& asked, const BakeShard& shard, const std::string& output, BakeJob& job, const Context& context,
              const Stopwatch& watch)
 {
-    const HostVulkan& host = asked.device->host();
+    Gpu& gpu = *asked.gpu;
     const Progress progress = consoleProgress(context);
     BakeReport report;
-    Status done = asked.apart ? bakeGroupShard(host, asked.scene, asked.positions, asked.settings, asked.groups, shard, progress, report)
-                              : bakeShard(host, asked.scene, asked.positions, asked.settings, shard, progress, report);
+    Status done = asked.apart ? bakeGroupShard(gpu, asked.scene, asked.positions, asked.settings, asked.groups, shard, progress, report)
+                              : bakeShard(gpu, asked.scene, asked.positions, asked.settings, shard, progress, report);
     if (done) done = job.commitAs(output);
     if (!done) return fail(job.withRemedy(done.error()));
     size_t probes = 0;

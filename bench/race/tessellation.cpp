@@ -74,6 +74,8 @@ Status run(Options& options)
     for (const PlacedProbe& probe : probes->probes) positions.push_back(probe.position);
     auto device = OwnDevice::create();
     if (!device) return device.error();
+    const auto gpu = Gpu::create(device->host());
+    if (!gpu) return gpu.error();
     auto truth = RayScene::create(*scene);
     if (!truth) return truth.error();
     auto set = sceneRays(*scene, *truth, options.rays, options.race.seed);
@@ -91,7 +93,7 @@ Status run(Options& options)
     {
         cutTo(*scene, count);
         BakeReport report;
-        auto field = bakeLightField(device->host(), *scene, positions, settings, {}, report);
+        auto field = bakeLightField(**gpu, *scene, positions, settings, {}, report);
         if (!field) return field.error();
         const std::string file = fmt::format("{}/{}.sconce", options.folder, scene->triangles.size());
         if (auto status = saveField(*field, file); !status) return status;

@@ -149,7 +149,7 @@ Result<FieldData> KeptFields::baked(const BenchProbes& probes, BakeSettings bake
         if (!built) return built.error();
         bake.rays = &exact.emplace(std::move(*built));
     }
-    auto field = bakeLightField(desc.gpu.host, desc.scene, positions, bake, progress, report);
+    auto field = bakeLightField(desc.gpu, desc.scene, positions, bake, progress, report);
     if (!field) return field;
     for (const SceneEffect& effect : checkScene(desc.scene).effects)
         if (effect.called) field->effects.push_back(effect.name);

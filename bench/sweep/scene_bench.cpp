@@ -156,7 +156,7 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
     bake.scene.light = {.emitterSamples = 0, .skySamples = 0, .sunShadow = knobs::sunShadow.least, .pointShadow = knobs::pointShadow.least};
     bake.grid = grid;
     BakeReport report; // rays ask where surfaces are, not how they are lit
-    auto field = bakeLightField(gpu.host, desc.scene, positions, bake, {}, report);
+    auto field = bakeLightField(gpu, desc.scene, positions, bake, {}, report);
     if (!field) return field.error();
     auto tracer = TracedMethod::create(
         gpu, std::move(*field), {.opponent = settings.opponent(), .quality = settings.quality, .lowFactor = settings.lowFactor}, "grid");

@@ -597,8 +597,8 @@ namespace
 
 /// @param shard  that is baked; null: all of it
 /// @return  of a shard, a field that lacks what the others do
-Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
-                          const BakeShard* shard, const Progress& progress, BakeReport& bakeReport)
+Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings, const BakeShard* shard,
+                          const Progress& progress, BakeReport& bakeReport)
 {
     Bake bake{{}, {}, {}, {}, {}, {}, progress, {}, shard};
     BakeReport spent;
@@ -612,8 +612,7 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         return Result<FieldData>(std::move(bake.field));
     };
 
-    auto gpu = Gpu::create(host);
-    if (!gpu) return gpu.error();
+    const uint64_t heldBefore = gpu.memory().restartPeak();
     {
         Lamps lamps; // which needs no device
         if (info.surfaceSize > 0 && settings.rays && settings.lampTexels > 0)
@@ -626,40 +625,40 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
         if (surfaceLight) // emitters are shadowed by rays, and rays find the sky
             sceneDesc.light = {
                 .emitterSamples = kTracedLightSamples, .skySamples = 0, .areaShadows = false, .lamps = std::move(lamps.triangles)};
-        auto deviceScene = DeviceScene::create(**gpu, scene, info, sceneDesc, progress);
+        auto deviceScene = DeviceScene::create(gpu, scene, info, sceneDesc, progress);
         if (!deviceScene) return deviceScene.error();
         // By the layout as this bake found it, with its lamps: for each it is another key, and for each next one the same.
         if (settings.journal) bake.parts = {settings.journal, bakeKey(scene, probes, settings)};
         auto baker =
-            ProbeBaker::create(**gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light), settings.faces);
+            ProbeBaker::create(gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light), settings.faces);
         if (!baker) return baker.error();
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();
 
         // Not before the scene is on the device: only its list of lights tells whether maps of emission are needed, which count.
         const bool emitters = deviceScene->lights().shines;
-        const bool deviceIsHost = (*gpu)->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+        const bool deviceIsHost = gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
         if (auto status = fitsTheHost(bake.field, settings, emitters, deviceIsHost); !status) return status.error();
         bake.takeRoom(emitters);
         if (auto status = bake.directLight(**baker, settings); !status) return status.error();
         spent.probeSeconds = watch.lap();
         if (shard && shard->stage == BakeStage::maps) return finished(spent);
         // The bounces find their probes by the octree, so it comes before them.
-        if (auto status = bake.index(**gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
+        if (auto status = bake.index(gpu, settings.octree, spent.octreeOnDevice); !status) return status.error();
         if (info.surfaceSize > 0) info.cellShift = cellShiftOf(info);
         spent.octreeSeconds = watch.lap();
         // A bounce writes the radiance anew, as direct light plus what the surfaces reflect: direct light must be kept for that.
         if (settings.bounces > 0 || surfaceLight) bake.direct = bake.field.radiance;
         spent.energy.push_back(meanRadiance(bake.field));
-        const Status bounced = settings.light         ? bake.lentLight(**gpu, **baker, *settings.light, spent)
-                               : info.surfaceSize > 0 ? bake.surfaceLight(**gpu, *deviceScene, **baker, settings, spent)
-                                                      : bake.bounces(**gpu, **baker, settings, spent);
+        const Status bounced = settings.light         ? bake.lentLight(gpu, **baker, *settings.light, spent)
+                               : info.surfaceSize > 0 ? bake.surfaceLight(gpu, *deviceScene, **baker, settings, spent)
+                                                      : bake.bounces(gpu, **baker, settings, spent);
         if (!bounced) return bounced.error();
         if (shard) return finished(spent);
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
         if (auto status = bake.finish(settings); !status) return status.error();
         spent.prefilterSeconds = watch.lap();
-        spent.peakDeviceBytes = (*gpu)->memory().peak();
+        spent.peakDeviceBytes = gpu.memory().peak() - heldBefore;
     }
     // Patches and prefiltering don't ask; who wanted to stop meanwhile is heard here.
     if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};
@@ -668,18 +667,18 @@ Result<FieldData> bakeAll(const HostVulkan& host, const Scene& scene, std::span<
 
 } // namespace
 
-Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+Result<FieldData> bakeLightField(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                  const Progress& progress, BakeReport& report)
 {
-    return bakeAll(host, scene, probes, settings, nullptr, progress, report);
+    return bakeAll(gpu, scene, probes, settings, nullptr, progress, report);
 }
 
-Status bakeShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
-                 const BakeShard& shard, const Progress& progress, BakeReport& report)
+Status bakeShard(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings, const BakeShard& shard,
+                 const Progress& progress, BakeReport& report)
 {
     if (const std::string fault = shardFault(settings, shard); !fault.empty())
         return Error{ErrorCode::badArgument, fmt::format("Bake: {}", fault)};
-    auto done = bakeAll(host, scene, probes, settings, &shard, progress, report);
+    auto done = bakeAll(gpu, scene, probes, settings, &shard, progress, report);
     return done ? success() : Status(done.error());
 }
 

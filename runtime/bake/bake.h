@@ -9,7 +9,7 @@
 #include "runtime/field/field_data.h"
 #include "runtime/frame/effect_plan.h"
 #include "runtime/scene/device_scene.h"
-#include "runtime/vulkan/host_vulkan.h"
+#include "runtime/vulkan/gpu.h"
 #include "scene/exact_rays.h"
 #include "scene/probe_grid.h"
 #include "svo/build_octree.h"
@@ -80,7 +80,7 @@ struct BakeReport
     double bounceSeconds = 0.0;
     uint64_t gatherRays = 0; // to triangles, that surface light took: of texels, cells and finer texels, on by lobes, and to lights
     double prefilterSeconds = 0.0;
-    uint64_t peakDeviceBytes = 0;
+    uint64_t peakDeviceBytes = 0; // besides what the device held before
     /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
     /// and then what each bounce adds. Where surface light is gathered by triangles, bounces are of what rays that end bring: glossy
     /// surfaces turn on a share of them, which the others make up for.
@@ -98,13 +98,13 @@ struct BakeReport
 /// moved
 ///                off it (runtime/bake/probe_clearance.h) where the probes are no grid
 /// Errors: badArgument (settings, probes: named), badInput (scene), outOfMemory (with the numbers), deviceFailure, cancelled.
-Result<FieldData> bakeLightField(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+Result<FieldData> bakeLightField(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                  const Progress& progress, BakeReport& report);
 
 /// A shard of the same bake, into settings.journal: bakeLightField() with a journal that has the parts of all shards gives the field that
 /// it gives without, to the byte. Stage gather needs the maps of all probes in the journal, and surface light; shard 0 gathers the cells,
 /// too. Errors: as bakeLightField(), and the journal's; badInput: the maps of a probe aren't there; badArgument: no journal, no such shard.
-Status bakeShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
-                 const BakeShard& shard, const Progress& progress, BakeReport& report);
+Status bakeShard(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings, const BakeShard& shard,
+                 const Progress& progress, BakeReport& report);
 
 } // namespace sconce

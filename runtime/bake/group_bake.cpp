@@ -143,35 +143,35 @@ constexpr const char* kAllLight = "all light";
 
 } // namespace
 
-Status bakeGroupShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+Status bakeGroupShard(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                       std::vector<LightGroupDesc> groups, const BakeShard& shard, const Progress& progress, BakeReport& report)
 {
     GroupBakes plan;
     if (auto status = planGroups(scene, settings, std::move(groups), plan); !status) return status;
-    if (auto status = bakeShard(host, scene, probes, plan.settings, shard, named(progress, kAllLight), report); !status) return status;
+    if (auto status = bakeShard(gpu, scene, probes, plan.settings, shard, named(progress, kAllLight), report); !status) return status;
     plan.layout.live.links = settings.liveLinks; // as the bake of all light leaves it: the groups' don't find links anew
     for (size_t g = 0; g < plan.groups.size(); ++g)
     {
         BakeReport spent;
-        auto status = bakeShard(host, plan.sceneOf(scene, g), probes, plan.settings, shard, named(progress, plan.nameOf(g)), spent);
+        auto status = bakeShard(gpu, plan.sceneOf(scene, g), probes, plan.settings, shard, named(progress, plan.nameOf(g)), spent);
         if (!status) return status;
         addSeconds(report, spent);
     }
     return success();
 }
 
-Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+Result<FieldData> bakeLightGroups(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                   std::vector<LightGroupDesc> wanted, const Progress& progress, BakeReport& report)
 {
     GroupBakes plan;
     if (auto status = planGroups(scene, settings, std::move(wanted), plan); !status) return status.error();
     const std::vector<LightGroupDesc>& groups = plan.groups;
-    auto field = bakeLightField(host, scene, probes, plan.settings, named(progress, kAllLight), report);
+    auto field = bakeLightField(gpu, scene, probes, plan.settings, named(progress, kAllLight), report);
     if (!field) return field;
     for (size_t g = 0; g < groups.size(); ++g)
     {
         BakeReport spent;
-        auto part = bakeLightField(host, plan.sceneOf(scene, g), probes, plan.settings, named(progress, plan.nameOf(g)), spent);
+        auto part = bakeLightField(gpu, plan.sceneOf(scene, g), probes, plan.settings, named(progress, plan.nameOf(g)), spent);
         if (!part) return part;
         if (!samePlaces(*field, *part))
             return Error{ErrorCode::deviceFailure,
@@ -192,10 +192,8 @@ Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, st
     field->live = std::move(plan.layout.live);
     std::vector<Light> lights;
     for (const uint32_t light : plan.live) lights.push_back(scene.lights[light]);
-    auto gpu = Gpu::create(host);
-    if (!gpu) return gpu.error();
-    const auto relit = settings.lit ? relightField(**gpu, *field, lights, weights)
-                                    : relightField(**gpu, *field, {}, std::vector<vec3>(groups.size(), vec3(0.0f)));
+    const auto relit = settings.lit ? relightField(gpu, *field, lights, weights)
+                                    : relightField(gpu, *field, {}, std::vector<vec3>(groups.size(), vec3(0.0f)));
     if (!relit) return relit.error();
     if (settings.lit) return field;
     field->live.lights = std::move(lights); // which whoever lights it takes if told nothing else

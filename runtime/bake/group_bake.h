@@ -15,11 +15,11 @@ namespace sconce
 /// @param report    of the bake of all light, with the seconds of all
 /// Errors: as bakeLightField(); badArgument: groups that aren't the scene's, no surface light.
 /// Cost: a bake more than there are groups, and for each of them all of the field's light again.
-Result<FieldData> bakeLightGroups(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+Result<FieldData> bakeLightGroups(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                                   std::vector<LightGroupDesc> groups, const Progress& progress, BakeReport& report);
 
 /// bakeShard() of all of these bakes.
-Status bakeGroupShard(const HostVulkan& host, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
+Status bakeGroupShard(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings,
                       std::vector<LightGroupDesc> groups, const BakeShard& shard, const Progress& progress, BakeReport& report);
 
 } // namespace sconce

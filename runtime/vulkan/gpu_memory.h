@@ -49,7 +49,9 @@ public:
     void release(Piece& piece);
 
     uint64_t used() const { return heldBytes; } // bytes taken from the driver; a host's allocator may ask
-    uint64_t peak() const { return peakBytes; }
+    uint64_t peak() const { return peakBytes; } // held at a time, since the last restartPeak()
+    /// @return  bytes held now
+    uint64_t restartPeak() { return peakBytes = heldBytes.load(); }
     uint64_t budget() const { return budgetBytes; }
 
 private:

@@ -32,7 +32,7 @@ struct HostVulkan
     std::function<VkResult(const VkSubmitInfo&, VkFence)> submit;
 
     // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called. By one
-    // Device and those of its forThread() never two at a time; a bake has memory, and a budget, of its own.
+    // Device and those of its forThread() never two at a time.
     std::function<VkResult(const VkMemoryAllocateInfo&, VkDeviceMemory&)> allocateMemory;
     std::function<void(VkDeviceMemory)> freeMemory;
 };

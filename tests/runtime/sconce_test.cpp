@@ -73,7 +73,7 @@ TEST_F(Door, BakesTheBytesOfTheBakeBehindIt)
     settings.take(*plan);
     BakeReport report;
     const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}, {0.3f, 0.5f, 0.3f}};
-    const auto field = bakeLightField(owner.host(), *scene, probes, settings, {}, report);
+    const auto field = bakeLightField(owner.gpu(), *scene, probes, settings, {}, report);
     ASSERT_TRUE(field) << field.error().message;
     ASSERT_TRUE(saveField(*field, *folder / "behind.sconce"));
     EXPECT_EQ(testing_support::readText(*folder / "behind.sconce"), testing_support::readText(file()));

@@ -26,7 +26,13 @@ public:
     ~ValidatedDevice()
     {
         lent.reset();
-        for (const std::string& message : own->validationMessages()) ADD_FAILURE() << message;
+        expectNoMessages();
+    }
+    /// Since the last time that it was asked.
+    void expectNoMessages()
+    {
+        const std::vector<std::string> messages = own->validationMessages();
+        for (; told < messages.size(); ++told) ADD_FAILURE() << messages[told];
     }
     const HostVulkan& host() const { return own->host(); }
     Gpu& gpu()
@@ -41,16 +47,46 @@ public:
 private:
     std::unique_ptr<OwnDevice> own;
     std::shared_ptr<Gpu> lent;
+    size_t told = 0; // messages
+};
+
+/// One device for all tests of a process that need none of their own: its passes are compiled once, which takes longer than most tests.
+/// What the layer has to say fails the test in which it said it.
+class SharedDevice
+{
+public:
+    ~SharedDevice() { one().expectNoMessages(); }
+    const HostVulkan& host() const { return one().host(); }
+    Gpu& gpu() const { return one().gpu(); }
+
+private:
+    /// Goes with the tests' end, so that what is said then fails the program.
+    struct Environment : testing::Environment
+    {
+        void TearDown() override { device.reset(); }
+        std::unique_ptr<ValidatedDevice> device;
+    };
+    static ValidatedDevice& one()
+    {
+        if (!environment->device) environment->device = std::make_unique<ValidatedDevice>();
+        return *environment->device;
+    }
+    static inline Environment* const environment = [] // which GoogleTest owns
+    {
+        auto made = new Environment;
+        testing::AddGlobalTestEnvironment(made);
+        return made;
+    }();
 };
 
 /// The fixture of tests that share nothing but the way to a device.
 class DeviceTest : public testing::Test
 {
 protected:
-    Gpu& gpu() { return validated.gpu(); }
+    Gpu& gpu() { return shared.gpu(); }
 
 private:
-    ValidatedDevice validated;
+    SharedDevice shared;
 };
 
 } // namespace sconce::testing_support

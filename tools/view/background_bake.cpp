@@ -62,6 +62,8 @@ Result<FieldData> BackgroundBake::work(const Scene& scene, const std::string& de
 
     auto own = OwnDevice::create({.device = device});
     if (!own) return own.error();
+    const auto gpu = Gpu::create(own->host());
+    if (!gpu) return gpu.error();
     BakeSettings settings;
     const auto plan = planEffects(checkScene(scene));
     if (!plan) return plan.error();
@@ -70,7 +72,7 @@ Result<FieldData> BackgroundBake::work(const Scene& scene, const std::string& de
     if (!rays) return rays.error();
     settings.rays = &*rays;
     BakeReport baked;
-    return bakeLightField(own->host(), scene, positions, settings, progress, baked);
+    return bakeLightField(**gpu, scene, positions, settings, progress, baked);
 }
 
 } // namespace sconce::tools

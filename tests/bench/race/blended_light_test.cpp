@@ -41,7 +41,7 @@ protected:
         settings.liveLinks = 16;
         settings.rays = &*rays;
         BakeReport report;
-        auto baked = bakeLightGroups(device.host(), scene, std::vector<vec3>{{-0.1f, 0.1f, 0.2f}}, settings, {}, {}, report);
+        auto baked = bakeLightGroups(device.gpu(), scene, std::vector<vec3>{{-0.1f, 0.1f, 0.2f}}, settings, {}, {}, report);
         ASSERT_TRUE(baked) << baked.error().message;
         field = std::move(*baked);
         auto onDevice = makeLightField(device.gpu(), field);

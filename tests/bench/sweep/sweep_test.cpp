@@ -85,7 +85,8 @@ Swept sweepWithin(const TestFolder& folder, uint64_t memoryBudget, size_t count)
 TEST(Sweep, APointThatFindsNoMemoryBesideOthersIsMeasuredInTheNextGroup)
 {
     const TestFolder folder;
-    const Swept one = sweepWithin(folder, 0, 1); // bakes the field
+    sweepWithin(folder, 0, 1); // bakes the field, which takes more than measuring
+    const Swept one = sweepWithin(folder, 0, 1);
     ASSERT_TRUE(std::filesystem::exists(folder.path / "cache" / "points"));
     const Swept two = sweepWithin(folder, 0, 2);
     ASSERT_GT(two.peakBytes, one.peakBytes) << "a second point takes nothing more, and nothing is tested";

@@ -209,8 +209,10 @@ protected:
         settings.liveLinks = how == Bake::live ? 8 : 0;
         settings.journal = journal;
         report = {};
-        return how == Bake::live ? bakeLightGroups(device->host(), *scene, kProbe, settings, {}, {}, report)
-                                 : bakeLightField(device->host(), *scene, kProbe, settings, {}, report);
+        const auto gpu = Gpu::create(device->host());
+        if (!gpu) return gpu.error();
+        return how == Bake::live ? bakeLightGroups(**gpu, *scene, kProbe, settings, {}, {}, report)
+                                 : bakeLightField(**gpu, *scene, kProbe, settings, {}, report);
     }
     static Outcome bytesOfField(const Result<FieldData>& made)
     {

@@ -101,7 +101,7 @@ protected:
         const uint64_t key = bakeKey(scene, probes, bake);
         if (const auto found = made.find(key); found != made.end()) return found->second;
         BakeReport report;
-        auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        auto field = bakeLightField(gpu(), scene, probes, bake, {}, report);
         if (field) made.emplace(key, *field);
         return field;
     }

@@ -221,7 +221,7 @@ TEST_F(IrradianceWeightsTest, OursStayBesideThoseOf2017AndOfRtxgi)
             bake.octree.voxels = 64;
             bake.scene.light = {.emitterSamples = 24, .skySamples = 32, .emitterShadow = 128, .skyShadow = 512};
             BakeReport report;
-            const auto field = bakeLightField(gpu().host, scene, positions, bake, {}, report);
+            const auto field = bakeLightField(gpu(), scene, positions, bake, {}, report);
             ASSERT_TRUE(field) << field.error().message;
             Text text(*field, {});
             const auto fieldPoint = [&](const Sample& sample) { return (sample.position - field->info.origin) / field->info.scale; };

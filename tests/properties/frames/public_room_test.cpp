@@ -104,11 +104,11 @@ TEST_F(PublicRoomTest, IrradianceAtTheProbesIsThePathTracers)
         BakeReport report;
         if (chart == gpu::kChartOctahedral)
         {
-            auto light = bakeLightField(gpu().host, scene, probes, lendingBake(bake), {}, report);
+            auto light = bakeLightField(gpu(), scene, probes, lendingBake(bake), {}, report);
             ASSERT_TRUE(light) << light.error().message;
             bake.light = &lent.emplace(std::move(*light));
         }
-        const auto field = bakeLightField(gpu().host, scene, probes, bake, {}, report);
+        const auto field = bakeLightField(gpu(), scene, probes, bake, {}, report);
         ASSERT_TRUE(field) << field.error().message;
         twin::LightFieldTwin<float> text(*field, {});
         double least = 10.0, most = 0.0;

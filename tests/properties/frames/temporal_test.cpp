@@ -89,7 +89,7 @@ TEST_F(TemporalTest, ASwitchedLightIsThereWithinEightFrames)
     bake.surfaceTexels = kFewTexels;
     BakeReport report;
     const std::vector<vec3> probes = {{0.0f, 1.5f, 0.5f}, {-0.8f, 0.5f, 0.6f}};
-    const auto baked = bakeLightGroups(gpu().host, lit, probes, bake, {{"lamp", {"emitters"}}, {"sky", {"sky"}}}, {}, report);
+    const auto baked = bakeLightGroups(gpu(), lit, probes, bake, {{"lamp", {"emitters"}}, {"sky", {"sky"}}}, {}, report);
     ASSERT_TRUE(baked) << baked.error().message;
     field.emplace(std::move(*makeLightField(gpu(), *baked)));
     auto groups = makeLightGroups(gpu(), *field, *baked);

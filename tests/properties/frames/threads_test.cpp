@@ -38,7 +38,7 @@ bool sameBits(const std::vector<gpu::RayHit>& a, const std::vector<gpu::RayHit>&
     return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
-Result<FieldData> bakedBox(const HostVulkan& host, const ExactRays& rays)
+Result<FieldData> bakedBox(Gpu& gpu, const ExactRays& rays)
 {
     BakeSettings settings;
     settings.resolution = 64;
@@ -48,7 +48,7 @@ Result<FieldData> bakedBox(const HostVulkan& host, const ExactRays& rays)
     settings.rays = &rays;
     settings.octree.voxels = 16;
     BakeReport report;
-    return bakeLightField(host, rays.scene(), std::span(kCornellProbes).first(3), settings, {}, report);
+    return bakeLightField(gpu, rays.scene(), std::span(kCornellProbes).first(3), settings, {}, report);
 }
 
 /// Two devices share nothing: each bakes on a thread of its own, with the same rays, what one alone does.
@@ -56,7 +56,7 @@ TEST(Threads, TwoDevicesBakeTheSameBytesAtOnce)
 {
     const TriangleRays rays = std::move(*TriangleRays::build(cornell().scene));
     std::array<std::unique_ptr<ValidatedDevice>, 2> devices{std::make_unique<ValidatedDevice>(), std::make_unique<ValidatedDevice>()};
-    const auto bake = [&](size_t device) { return bakedBox(devices[device]->host(), rays); };
+    const auto bake = [&](size_t device) { return bakedBox(devices[device]->gpu(), rays); };
     const auto alone = bake(0);
     ASSERT_TRUE(alone) << alone.error().message;
     std::array<std::optional<Result<FieldData>>, 2> made;
@@ -80,7 +80,7 @@ TEST(Threads, FieldsLoadWhileOthersAreTraced)
     const TestFolder folder;
     {
         const TriangleRays triangles = std::move(*TriangleRays::build(cornell().scene));
-        const auto baked = bakedBox(validated.host(), triangles);
+        const auto baked = bakedBox(validated.gpu(), triangles);
         ASSERT_TRUE(baked) << baked.error().message;
         ASSERT_TRUE(saveField(*baked, folder / "box.sconce"));
     }

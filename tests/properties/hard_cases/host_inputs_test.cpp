@@ -46,7 +46,7 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     bake.surfaceTexels = 26;
     bake.surfaceRays = 16;
     BakeReport report;
-    const auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
+    const auto field = bakeLightField(gpu(), scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
     ASSERT_TRUE(field) << field.error().message;
     const auto light = makeLightField(gpu(), *field);
     ASSERT_TRUE(light) << light.error().message;

@@ -61,7 +61,7 @@ TEST_P(LightLeaks, DarkRoomStaysDark)
     ASSERT_TRUE(rays) << rays.error().message;
     settings.rays = &*rays; // as `sconce bake` does by default
     BakeReport report;
-    const auto field = bakeLightField(gpu().host, scene, positions, settings, {}, report);
+    const auto field = bakeLightField(gpu(), scene, positions, settings, {}, report);
     ASSERT_TRUE(field) << field.error().message;
     const auto device = DeviceScene::create(gpu(), scene, field->info);
     ASSERT_TRUE(device) << device.error().message;

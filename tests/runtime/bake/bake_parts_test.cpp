@@ -75,17 +75,17 @@ protected:
     Result<FieldData> bake(BakeJournal* journal)
     {
         settings.journal = journal;
-        return bakeLightField(device.host(), scene, probes, settings, {}, report);
+        return bakeLightField(device.gpu(), scene, probes, settings, {}, report);
     }
     Result<FieldData> bakeGroups(BakeJournal* journal)
     {
         settings.journal = journal;
         settings.liveLinks = 8;
         settings.surfaceRays = 8;
-        return bakeLightGroups(device.host(), scene, probes, settings, {}, {}, report);
+        return bakeLightGroups(device.gpu(), scene, probes, settings, {}, {}, report);
     }
     const TestFolder folder;
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
     const Scene scene = *makeBuiltinScene("cornell");
     const TriangleRays rays = std::move(*TriangleRays::build(scene));
     const std::vector<vec3> probes{vec3(0.0f, 1.0f, 0.0f), vec3(0.5f, 1.5f, 0.3f), vec3(-0.5f, 0.4f, 0.6f)};
@@ -167,7 +167,7 @@ TEST_F(PartBake, ShardsInAnyOrderAreTheWhole)
                 settings.journal = &merged;
                 const size_t before = merged.count(stage);
                 const BakeShard shard{i, count, stage};
-                const Status done = bakeShard(device.host(), scene, probes, settings, shard, {}, report);
+                const Status done = bakeShard(device.gpu(), scene, probes, settings, shard, {}, report);
                 ASSERT_TRUE(done) << done.error().message;
                 size_t own = 0;
                 for (size_t probe = 0; probe < probes.size(); ++probe) own += shard.has(probe);
@@ -187,7 +187,7 @@ TEST_F(PartBake, ShardsOfGroupsAreTheWhole)
     for (const BakeStage stage : {BakeStage::maps, BakeStage::gather})
         for (uint32_t i = 0; i < 2; ++i)
         {
-            const Status done = bakeGroupShard(device.host(), scene, probes, settings, {}, {i, 2, stage}, {}, report);
+            const Status done = bakeGroupShard(device.gpu(), scene, probes, settings, {}, {i, 2, stage}, {}, report);
             ASSERT_TRUE(done) << done.error().message;
         }
     const size_t parts = merged.parts.size();
@@ -200,7 +200,7 @@ TEST_F(PartBake, ShardsThatCannotBeAreRefused)
     Memory journal;
     const auto code = [&](const BakeShard& shard)
     {
-        const Status done = bakeShard(device.host(), scene, probes, settings, shard, {}, report);
+        const Status done = bakeShard(device.gpu(), scene, probes, settings, shard, {}, report);
         return done ? std::nullopt : std::optional(done.error().code);
     };
     EXPECT_EQ(code({0, 1, BakeStage::maps}), ErrorCode::badArgument) << "no journal";

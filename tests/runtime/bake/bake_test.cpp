@@ -99,11 +99,11 @@ class Bake : public testing::Test
 protected:
     FieldData bake(const Scene& scene, std::vector<vec3> probes, const BakeSettings& settings)
     {
-        auto field = bakeLightField(device.host(), scene, probes, settings, {}, cost);
+        auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, cost);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     }
-    ValidatedDevice device;
+    testing_support::SharedDevice device;
     BakeReport cost;
 };
 
@@ -519,7 +519,7 @@ TEST_F(Bake, BadSettingsAreNamed)
     const Scene scene = litRoom();
     const auto refusal = [&](std::vector<vec3> probes, const BakeSettings& settings)
     {
-        auto field = bakeLightField(device.host(), scene, probes, settings, {}, cost);
+        auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, cost);
         return field ? std::string("was accepted") : field.error().message;
     };
     EXPECT_NE(refusal({}, settingsFor(64)).find("0 probes"), std::string::npos);
@@ -533,7 +533,7 @@ TEST_F(Bake, CancelEndsWithItsCode)
     const Scene scene = litRoom();
     const std::vector<vec3> probes(3, vec3(0.0f));
     auto field = bakeLightField(
-        device.host(), scene, probes, settingsFor(64), [](std::string_view stage, double done) { return stage != "probes" || done < 0.5; },
+        device.gpu(), scene, probes, settingsFor(64), [](std::string_view stage, double done) { return stage != "probes" || done < 0.5; },
         cost);
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::cancelled);
@@ -544,7 +544,7 @@ TEST(BakeBudget, TooSmallIsRefusedWithTheNumbers)
     ValidatedDevice device(uint64_t(24) << 20);
     BakeReport cost;
     const std::vector<vec3> probes = {vec3(0.0f)};
-    auto field = bakeLightField(device.host(), litRoom(), probes, settingsFor(1024), {}, cost);
+    auto field = bakeLightField(device.gpu(), litRoom(), probes, settingsFor(1024), {}, cost);
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::outOfMemory);
     EXPECT_NE(field.error().message.find("24 MiB"), std::string::npos) << field.error().message;
@@ -555,7 +555,7 @@ TEST_F(Bake, MoreMainMemoryThanItMayHaveIsRefusedWithTheNumbers)
     const std::vector<vec3> probes(3, vec3(0.0f));
     BakeSettings settings = settingsFor(256);
     settings.hostMemory = uint64_t(1) << 20;
-    const auto field = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    const auto field = bakeLightField(device.gpu(), litRoom(), probes, settings, {}, cost);
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::outOfMemory);
     for (const char* part : {"3 probes", "256 texels", "1 MiB"})
@@ -565,7 +565,7 @@ TEST_F(Bake, MoreMainMemoryThanItMayHaveIsRefusedWithTheNumbers)
 TEST_F(Bake, MoreMainMemoryThanAnyMachineHasIsRefused)
 {
     const std::vector<vec3> probes(65535, vec3(0.0f)); // about 9 TiB
-    const auto field = bakeLightField(device.host(), litRoom(), probes, settingsFor(2048), {}, cost);
+    const auto field = bakeLightField(device.gpu(), litRoom(), probes, settingsFor(2048), {}, cost);
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::outOfMemory);
     EXPECT_NE(field.error().message.find("65535 probes"), std::string::npos) << field.error().message;
@@ -575,16 +575,16 @@ TEST_F(Bake, CompactIsTheSameBakePutInBlocks)
 {
     const std::vector<vec3> probes(2, vec3(0.0f));
     BakeSettings settings = settingsFor(64, 1);
-    auto texels = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    auto texels = bakeLightField(device.gpu(), litRoom(), probes, settings, {}, cost);
     settings.compact = true;
-    const auto blocks = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    const auto blocks = bakeLightField(device.gpu(), litRoom(), probes, settings, {}, cost);
     ASSERT_TRUE(texels && blocks);
     ASSERT_TRUE(putInBlocks(*texels));
     EXPECT_EQ(texels->distance, blocks->distance);
     EXPECT_EQ(texels->radiance, blocks->radiance);
     EXPECT_EQ(texels->surfaceLight, blocks->surfaceLight);
     settings.chart = gpu::kChartOctahedral;
-    const auto refused = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    const auto refused = bakeLightField(device.gpu(), litRoom(), probes, settings, {}, cost);
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("compact"), std::string::npos) << refused.error().message;
 }
@@ -594,7 +594,7 @@ TEST_F(Bake, WithoutShadowMapsOfAreaLightIsRefused)
     const std::vector<vec3> probes = {vec3(0.0f)};
     BakeSettings settings = settingsFor(64);
     settings.scene.light.areaShadows = false; // as frames with shadow rays have it
-    const auto field = bakeLightField(device.host(), litRoom(), probes, settings, {}, cost);
+    const auto field = bakeLightField(device.gpu(), litRoom(), probes, settings, {}, cost);
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::badArgument);
     EXPECT_NE(field.error().message.find("areaShadows"), std::string::npos) << field.error().message;
@@ -603,7 +603,7 @@ TEST_F(Bake, WithoutShadowMapsOfAreaLightIsRefused)
 TEST_F(Bake, SceneWithoutTrianglesIsRefused)
 {
     const std::vector<vec3> probes = {vec3(0.0f)};
-    auto field = bakeLightField(device.host(), emptyScene(), probes, settingsFor(64), {}, cost);
+    auto field = bakeLightField(device.gpu(), emptyScene(), probes, settingsFor(64), {}, cost);
     ASSERT_FALSE(field);
     EXPECT_EQ(field.error().code, ErrorCode::badInput);
 }

@@ -117,10 +117,10 @@ protected:
         out.faces = faces;
         return out;
     }
-    Result<FieldData> bake(const BakeSettings& with) { return bakeLightField(device.host(), scene, probes, with, {}, report); }
+    Result<FieldData> bake(const BakeSettings& with) { return bakeLightField(device.gpu(), scene, probes, with, {}, report); }
     HostsRenderer host() { return HostsRenderer(device.gpu(), scene); }
 
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
     BakeReport report;
 };
 
@@ -306,7 +306,7 @@ TEST_F(DrawnFaces, AreRefusedWhereTheyCantBeKeptApart)
     EXPECT_EQ(kept.error().code, ErrorCode::badArgument);
     EXPECT_NE(kept.error().message.find("journal"), std::string::npos);
     with.journal = nullptr;
-    const auto grouped = bakeLightGroups(device.host(), scene, probes, with, {{"rest", {}}}, {}, report);
+    const auto grouped = bakeLightGroups(device.gpu(), scene, probes, with, {{"rest", {}}}, {}, report);
     ASSERT_FALSE(grouped);
     EXPECT_EQ(grouped.error().code, ErrorCode::badArgument);
     EXPECT_NE(grouped.error().message.find("light groups"), std::string::npos);

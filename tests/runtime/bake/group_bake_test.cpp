@@ -70,8 +70,8 @@ protected:
         if (!rays) return rays.error();
         if (with.chart == gpu::kChartCube) with.rays = &*rays;
         BakeReport report;
-        return groups.empty() ? bakeLightField(device.host(), scene, kProbes, with, {}, report)
-                              : bakeLightGroups(device.host(), scene, kProbes, with, std::move(groups), {}, report);
+        return groups.empty() ? bakeLightField(device.gpu(), scene, kProbes, with, {}, report)
+                              : bakeLightGroups(device.gpu(), scene, kProbes, with, std::move(groups), {}, report);
     }
     /// One of all tests, baked once.
     const FieldData& room()
@@ -88,7 +88,7 @@ protected:
         EXPECT_TRUE(status) << status.error().message;
         return field;
     }
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
 };
 
 Scene dimmed(std::vector<vec3> weights)

@@ -36,7 +36,7 @@ protected:
         settings.rays = &*rays;
         settings.octree.voxels = 32;
         BakeReport report;
-        auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, report);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     }
@@ -56,7 +56,7 @@ protected:
         return double(open) / kRays;
     }
 
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
 };
 
 // A slab over a floor: the floor under it is seen from beside it by whoever looks, and by no probe, which stand above.

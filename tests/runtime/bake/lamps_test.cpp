@@ -102,7 +102,7 @@ protected:
         settings.lampTexels = lampTexels;
         settings.rays = &*rays;
         BakeReport report;
-        return bakeLightField(gpu().host, scene, kProbes, settings, {}, report);
+        return bakeLightField(gpu(), scene, kProbes, settings, {}, report);
     }
 
     static double mean(std::span<const float> values)

@@ -40,7 +40,7 @@ protected:
         settings.rays = &*rays;
         settings.octree.voxels = 16;
         BakeReport report;
-        auto field = bakeLightField(device.host(), scene, std::vector<vec3>{{0.9f, 1.0f, 0.3f}}, settings, {}, report);
+        auto field = bakeLightField(device.gpu(), scene, std::vector<vec3>{{0.9f, 1.0f, 0.3f}}, settings, {}, report);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     }
@@ -65,7 +65,7 @@ protected:
         return off / all;
     }
 
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
     Scene scene;
 };
 

@@ -37,7 +37,7 @@ protected:
         std::optional<TriangleRays> rays;
         if (gather == knobs::kGathers[0]) settings.rays = &rays.emplace(std::move(*TriangleRays::build(scene)));
         settings.octree.voxels = 16;
-        auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, report);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     }
@@ -73,7 +73,7 @@ protected:
         for (const double v : values) spread.worst = std::max(spread.worst, std::abs(v / spread.mean - 1.0));
         return spread;
     }
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
     BakeReport report;
 };
 
@@ -140,11 +140,11 @@ TEST_F(SurfaceBake, OctahedralMapsReflectTheLightThatIsLent)
         settings.converged = 0.0005f;
         settings.rays = &rays;
         const std::vector<vec3> probes{vec3(0.3f, 0.2f, 0.1f), vec3(-0.5f, -0.3f, 0.4f)};
-        const auto light = bakeLightField(device.host(), scene, probes, lendingBake(settings), {}, report);
+        const auto light = bakeLightField(device.gpu(), scene, probes, lendingBake(settings), {}, report);
         ASSERT_TRUE(light) << light.error().message;
         EXPECT_EQ(light->info.chart, gpu::kChartCube);
         settings.light = &*light;
-        const auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        const auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, report);
         ASSERT_TRUE(field) << field.error().message;
         EXPECT_EQ(field->info.chart, gpu::kChartOctahedral);
         EXPECT_TRUE(field->surfaceLight.empty());
@@ -169,7 +169,7 @@ TEST_F(SurfaceBake, LightOfOtherProbesOrWithoutSurfacesIsNotLent)
     const auto complaint = [&](const FieldData& lender, std::vector<vec3> probes)
     {
         settings.light = &lender;
-        const auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        const auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, report);
         return field ? "baked" : field.error().message;
     };
     EXPECT_NE(complaint(light, {vec3(0.1f), vec3(0.2f)}).find("has 1 probes, not the 2"), std::string::npos);
@@ -250,7 +250,7 @@ TEST_F(SurfaceBake, IsDroppedWhereNoFrameReadsIt)
         settings.octree.voxels = 16;
         settings.readsSurfaces = reads;
         BakeReport spent;
-        auto field = bakeLightField(device.host(), scene, std::vector<vec3>{{0.1f, 1.0f, 0.2f}}, settings, {}, spent);
+        auto field = bakeLightField(device.gpu(), scene, std::vector<vec3>{{0.1f, 1.0f, 0.2f}}, settings, {}, spent);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     };
@@ -384,17 +384,17 @@ TEST_F(SurfaceBake, WhatABakeMayNotTakeIsRefusedByItsSentence)
     mesh.box(vec3(-1.0f), vec3(1.0f), mesh.material("white", vec3(0.5f)));
     BakeSettings settings;
     settings.surfaceTexels = 50;
-    auto odd = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    auto odd = bakeLightField(device.gpu(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
     ASSERT_FALSE(odd);
     EXPECT_NE(odd.error().message.find("surfaceTexels is 50"), std::string::npos) << odd.error().message;
     settings.surfaceTexels = 52;
     settings.surfaceRays = 0;
-    auto none = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    auto none = bakeLightField(device.gpu(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().message.find("surfaceRays is 0"), std::string::npos) << none.error().message;
     settings.surfaceRays = 64;
     settings.hostMemory = 6u << 20;
-    auto little = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    auto little = bakeLightField(device.gpu(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
     ASSERT_FALSE(little);
     EXPECT_EQ(little.error().code, ErrorCode::outOfMemory) << "the links alone take 4 MiB";
 }

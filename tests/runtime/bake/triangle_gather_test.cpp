@@ -41,7 +41,7 @@ protected:
         std::optional<TriangleRays> rays;
         if (gather == knobs::kGathers[0]) settings.rays = &rays.emplace(std::move(*TriangleRays::build(scene)));
         settings.octree.voxels = 16;
-        auto field = bakeLightField(device.host(), scene, probes, settings, {}, report);
+        auto field = bakeLightField(device.gpu(), scene, probes, settings, {}, report);
         if (!field) throw std::runtime_error(field.error().message);
         return std::move(*field);
     }
@@ -69,7 +69,7 @@ protected:
         return found;
     }
 
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
     BakeReport report;
 };
 
@@ -361,12 +361,12 @@ TEST_F(TriangleGathering, RaysOfAnotherSceneAndTooManyTexelsAreRefused)
     const auto rays = TriangleRays::build(other);
     BakeSettings settings;
     settings.rays = &*rays;
-    const auto strange = bakeLightField(device.host(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
+    const auto strange = bakeLightField(device.gpu(), scene, std::vector<vec3>{vec3(0.0f)}, settings, {}, report);
     ASSERT_FALSE(strange);
     EXPECT_EQ(strange.error().code, ErrorCode::badArgument);
     EXPECT_NE(strange.error().message.find("rays are of a scene of 2 triangles"), std::string::npos) << strange.error().message;
     settings.rays = nullptr;
-    const auto many = bakeLightField(device.host(), scene, std::vector<vec3>(17000, vec3(0.0f)), settings, {}, report);
+    const auto many = bakeLightField(device.gpu(), scene, std::vector<vec3>(17000, vec3(0.0f)), settings, {}, report);
     ASSERT_FALSE(many);
     EXPECT_EQ(many.error().code, ErrorCode::badArgument);
     EXPECT_NE(many.error().message.find("275808000 texels"), std::string::npos) << many.error().message;

@@ -92,8 +92,8 @@ protected:
         BakeSettings with = settings(links);
         with.rays = &*rays;
         BakeReport report;
-        return links == 0 ? bakeLightField(device.host(), scene, probes, with, {}, report)
-                          : bakeLightGroups(device.host(), scene, probes, with, std::move(groups), {}, report);
+        return links == 0 ? bakeLightField(device.gpu(), scene, probes, with, {}, report)
+                          : bakeLightGroups(device.gpu(), scene, probes, with, std::move(groups), {}, report);
     }
     /// Baked once for all tests, by its name.
     const FieldData& field(const std::string& name, const std::function<Scene()>& scene, uint32_t links,
@@ -139,7 +139,7 @@ protected:
         }
         return sum / area;
     }
-    testing_support::ValidatedDevice device;
+    testing_support::SharedDevice device;
 };
 
 /// Mean of the luminance of surface light's texels.

@@ -129,7 +129,7 @@ TEST_F(NanScanTest, ABakeAndItsFramesAreCleanAndANaNInTheFieldIsNamedWhereItCome
         bake.surfaceTexels = 26;
         bake.surfaceRays = 16;
         BakeReport report;
-        auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
+        auto field = bakeLightField(gpu(), scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}, {-0.7f, 0.5f, 0.6f}}, bake, {}, report);
         ASSERT_TRUE(field) << field.error().message;
         if (chart == gpu::kChartOctahedral) continue;
         RenderSettings settings = settingsOf(48);
@@ -218,7 +218,7 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         bake.scene.light.sunShadow = 256;
         bake.scene.light.emitterSamples = 8;
         BakeReport report;
-        auto field = bakeLightField(gpu().host, scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}}, bake, {}, report);
+        auto field = bakeLightField(gpu(), scene, std::vector<vec3>{{0.0f, 1.5f, 0.5f}}, bake, {}, report);
         ASSERT_TRUE(field) << field.error().message;
         if (chart == gpu::kChartOctahedral) continue;
         RenderSettings settings = settingsOf(32);
