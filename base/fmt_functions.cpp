@@ -1,5 +1,5 @@
-// fmt's functions, compiled once for all of Sconce instead of in every file that formats a sentence (half of the compiler's time,
-// measured), and within our own library, so that hosts of the installed one need no fmt.
+// fmt's functions, compiled once for all of Sconce instead of in every file that formats a sentence (a third to a
+// half of the compiler's time), and within our own library, so that hosts of the installed one need no fmt.
 #include <locale>
 
 #include <fmt/format-inl.h>

@@ -658,7 +658,7 @@ Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> pr
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
         if (auto status = bake.finish(settings); !status) return status.error();
         spent.prefilterSeconds = watch.lap();
-        spent.peakDeviceBytes = gpu.memory().peak() - heldBefore;
+        spent.peakDeviceBytes = std::max(gpu.memory().peak(), heldBefore) - heldBefore;
     }
     // Patches and prefiltering don't ask; who wanted to stop meanwhile is heard here.
     if (!report(progress, "done", 1.0)) return Error{ErrorCode::cancelled, "The bake was stopped at its end"};

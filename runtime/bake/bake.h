@@ -80,7 +80,7 @@ struct BakeReport
     double bounceSeconds = 0.0;
     uint64_t gatherRays = 0; // to triangles, that surface light took: of texels, cells and finer texels, on by lobes, and to lights
     double prefilterSeconds = 0.0;
-    uint64_t peakDeviceBytes = 0; // besides what the device held before
+    uint64_t peakDeviceBytes = 0; // besides what the device held before; with what other threads take of it meanwhile
     /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
     /// and then what each bounce adds. Where surface light is gathered by triangles, bounces are of what rays that end bring: glossy
     /// surfaces turn on a share of them, which the others make up for.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/numbers.h"
+
 namespace sconce
 {
 namespace
@@ -70,7 +72,8 @@ void EmitterPatches::weigh(glm::vec3 point, glm::vec3 normal, glm::vec3 plane, f
         const Lanes facing = -(to.x * column(3) + to.y * column(4) + to.z * column(5));
         const Lanes behind = column(10) > none ? none : -facing, seen = facing < none ? behind : facing;
         const Lanes attenuation = seen * area / d2;
-        const Lanes luminous = column(6) * attenuation * 0.2126f + column(7) * attenuation * 0.7152f + column(8) * attenuation * 0.0722f;
+        const Lanes luminous =
+            column(6) * attenuation * kLuminance.x + column(7) * attenuation * kLuminance.y + column(8) * attenuation * kLuminance.z;
         const Lanes along = dot(to, normal), above = along < none ? none : along;
         Lanes cosine = dot(to, plane) > none ? above : none;
         cosine = d2 < near * area ? none : cosine;

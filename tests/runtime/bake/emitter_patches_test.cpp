@@ -1,5 +1,7 @@
 // Patches weighed several at once against the shaders' own text, patch by patch.
 #include <bit>
+#include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -43,7 +45,7 @@ float weightOf(const gpu::GpuLight& patch, glm::vec3 point, glm::vec3 normal, gl
         patch.intensity * Text::patchAttenuation(-glm::dot(toLight, patch.direction), d2, patch.area, 0.0f, patch.innerCone > 0.0f);
     float cosine = glm::dot(plane, toLight) > 0.0f && !(d2 < near * patch.area) ? std::max(glm::dot(normal, toLight), 0.0f) : 0.0f;
     cosine *= Text::takenAlong(cosine, grazing);
-    return cosine * glm::dot(irradiance, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+    return cosine * Text::luminance(irradiance);
 }
 
 TEST(EmitterPatches, AreWeighedTogetherAsOneByOneToTheBit)
