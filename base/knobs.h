@@ -373,6 +373,16 @@ inline constexpr Knob<uint64_t> hostBytes{.name = "hostMemory",
                                           .unit = "bytes",
                                           .inWords = "what is free",
                                           .what = "Main memory that a bake may take"};
+inline constexpr Knob<float> submissionMs{
+    .name = "submission",
+    .option = "bake --submission",
+    .member = "BakeDesc::submissionMs",
+    .value = 200,
+    .least = 1,
+    .most = 60000,
+    .unit = "ms",
+    .what =
+        "Time that a bake holds the device at once, as far as its passes can be cut; less lets others draw, and takes more submissions"};
 inline constexpr Knob<int> octreeVoxels{.name = "voxels",
                                         .member = "OctreeSettings::voxels",
                                         .value = 0,

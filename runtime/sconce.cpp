@@ -122,6 +122,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.resolution = desc.resolution;
     settings.bounces = desc.bounces;
     settings.converged = desc.converged;
+    settings.submissionMs = desc.submissionMs;
     settings.rays = desc.rays;
     settings.faces = desc.faces;
     settings.liveLinks = desc.liveLinks;

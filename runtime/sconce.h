@@ -380,7 +380,8 @@ struct BakeDesc
     float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
     std::string effects = "auto";             // as planEffects()
     const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
-    uint32_t liveLinks = knobs::liveLinks.value; // of each surface texel, so that LiveLight moves lights; 0: they stay
+    uint32_t liveLinks = knobs::liveLinks.value;    // of each surface texel, so that LiveLight moves lights; 0: they stay
+    float submissionMs = knobs::submissionMs.value; // that the device is held at once at most, as far as passes can be cut
     bool lit = true;                    // false: geometry and material alone, with live links: no light until LiveLight has recorded
     ProbeFaces* faces = nullptr;        // draws what probes see, without liveLinks and groups; null: the scene's triangles are drawn
     std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked

@@ -6,7 +6,7 @@
 #include "shared/bake_passes.h"
 
 // Bake: the light of a cell on one of its six facings, at a place in the open that the cell's probes see. See shared/light_cells.h.
-// Dispatch: any number of groups in a row.
+// Dispatch: rows of kCellRow groups.
 layout(local_size_x = kCellGroup) in;
 layout(scalar, push_constant) uniform Push { SurfacePush push; };
 #include "surface_rays.glsl"
@@ -45,5 +45,6 @@ void main()
 {
     ivec3 count = lightCells();
     uint facings = 6u * uint(count.x * count.y * count.z);
-    for (uint index = gl_GlobalInvocationID.x; index < facings; index += gl_NumWorkGroups.x * kCellGroup) light(index);
+    uint index = gl_GlobalInvocationID.y * kCellRow * kCellGroup + gl_GlobalInvocationID.x;
+    if (index < facings) light(index);
 }

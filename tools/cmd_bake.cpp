@@ -166,6 +166,7 @@ void tellBake(const FieldData& field, const std::string& output, const Asked& as
         json["probes_tight"] = report.tight;
         json["energy"] = report.energy;
         json["peak_device_bytes"] = report.peakDeviceBytes;
+        json["longest_submission_ms"] = 1e3 * report.longestSubmission;
         json["stage_seconds"] = {{"scene", report.sceneSeconds},    {"probes", report.probeSeconds},
                                  {"octree", report.octreeSeconds},  {"gather", report.gatherSeconds},
                                  {"bounces", report.bounceSeconds}, {"prefilter", report.prefilterSeconds}};
@@ -266,6 +267,7 @@ void addOptions(CLI::App* bake, BakeOptions& options)
         "Lights that can be switched, dimmed and coloured later (`render --dim`, `relight`, LightGroups), each for a bake more and all "
         "light of the file again");
     addKnob(bake, "--memory", options.memoryMb, knobs::deviceMebibytes, "MIB");
+    addKnob(bake, "--submission", settings.submissionMs, knobs::submissionMs, "MS");
     bake->add_option(
             "--effects", options.effects,
             described("auto: what the scene calls for; all; none; or a list of effects, as `sconce check` names them; -NAME takes one "

@@ -64,7 +64,7 @@ std::string argumentFault(std::span<const vec3> probes, const BakeSettings& sett
         firstFault({faultOf(knobs::bounces, settings.bounces), faultOf(knobs::converged, settings.converged),
                     faultOf(knobs::surfaceTexels, settings.surfaceTexels), faultOf(knobs::surfaceRays, settings.surfaceRays),
                     faultOf(knobs::surfaceRefined, settings.surfaceRefined), faultOf(knobs::lampTexels, settings.lampTexels),
-                    faultOf(knobs::liveLinks, settings.liveLinks)});
+                    faultOf(knobs::liveLinks, settings.liveLinks), faultOf(knobs::submissionMs, settings.submissionMs)});
     if (!fault.empty()) return fault;
     if (settings.faces && settings.journal)
         return "what a host draws is no part of a journal's key; bake without a journal, or let the bake draw the scene";
@@ -208,6 +208,7 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
 /// A bake in progress: the field and what the bounces need besides.
 struct Bake
 {
+    PacedWork& work; // of the device
     FieldData field;
     FieldData cube;                                  // octahedral chart: the cube faces that octree and summaries are made from
     std::vector<uint32_t> surfaces, direct, emitted; // emitted is empty when the scene has no emitters
@@ -316,7 +317,7 @@ Status Bake::index(Gpu& gpu, const OctreeSettings& settings, bool& onDevice)
     {
         parallelFor(seen.probes.size(), [&](size_t i) { summariseProbe(seen, i); });
         const ProbeMaps maps{seen.info, seen.probes, seen.distance};
-        auto octree = buildOctreeOnDevice(gpu, maps, settings, progress);
+        auto octree = buildOctreeOnDevice(gpu, work, maps, settings, progress);
         const bool there = bool(octree);
         // All maps at once may be more than the device has beside the scene; the host gives the same bytes.
         if (!octree && octree.error().code == ErrorCode::outOfMemory) octree = buildOctree(maps, settings, progress);
@@ -410,7 +411,7 @@ Status Bake::surfaceLight(Gpu& gpu, const DeviceScene& scene, ProbeBaker& baker,
                       TriangleGather::Desc{settings.surfaceRays, shadowRays});
     auto gatherer = SurfaceBaker::create(
         gpu, scene, *dark, texels,
-        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live, parts});
+        {settings.surfaceRays, shadowRays, knobs::normalOffset.value * field.info.diagonal, exact ? &*exact : nullptr, live, parts, &work});
     if (!gatherer) return gatherer.error();
     if (auto status = gather(*gatherer); !status) return status;
     spent.gatherSeconds = watch.lap();
@@ -600,7 +601,8 @@ namespace
 Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> probes, const BakeSettings& settings, const BakeShard* shard,
                           const Progress& progress, BakeReport& bakeReport)
 {
-    Bake bake{{}, {}, {}, {}, {}, {}, progress, {}, shard};
+    PacedWork work(gpu, 1e-3 * double(settings.submissionMs));
+    Bake bake{work, {}, {}, {}, {}, {}, {}, progress, {}, shard};
     BakeReport spent;
     Stopwatch watch;
     if (auto status = bake.describe(scene, probes, settings, spent); !status) return status.error();
@@ -613,6 +615,7 @@ Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> pr
     };
 
     const uint64_t heldBefore = gpu.memory().restartPeak();
+    gpu.restartLongest();
     {
         Lamps lamps; // which needs no device
         if (info.surfaceSize > 0 && settings.rays && settings.lampTexels > 0)
@@ -629,8 +632,8 @@ Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> pr
         if (!deviceScene) return deviceScene.error();
         // By the layout as this bake found it, with its lamps: for each it is another key, and for each next one the same.
         if (settings.journal) bake.parts = {settings.journal, bakeKey(scene, probes, settings)};
-        auto baker =
-            ProbeBaker::create(gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light), settings.faces);
+        auto baker = ProbeBaker::create(gpu, *deviceScene, info, surfaceLight, surfaceLight && (settings.rays || settings.light),
+                                        settings.faces, work);
         if (!baker) return baker.error();
         spent.lights = uint32_t(deviceScene->lights().lights.size());
         spent.sceneSeconds = watch.lap();
@@ -658,6 +661,7 @@ Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> pr
         spent.bounceSeconds = watch.lap() - spent.gatherSeconds;
         if (auto status = bake.finish(settings); !status) return status.error();
         spent.prefilterSeconds = watch.lap();
+        spent.longestSubmission = gpu.longest();
         spent.peakDeviceBytes = std::max(gpu.memory().peak(), heldBefore) - heldBefore;
     }
     // Patches and prefiltering don't ask; who wanted to stop meanwhile is heard here.

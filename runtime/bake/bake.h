@@ -48,7 +48,8 @@ struct BakeSettings
     /// reflect, and nothing is gathered. What octahedral maps need, which hold no surface light. Null: what this bake finds itself.
     const FieldData* light = nullptr;
     LightLayout* layout = nullptr; // where light is kept that isn't in texels: an empty one is filled; null: as this bake finds it
-    uint64_t hostMemory = knobs::hostBytes.value; // bytes of main memory that it may take; 0: what is free
+    uint64_t hostMemory = knobs::hostBytes.value;   // bytes of main memory that it may take; 0: what is free
+    float submissionMs = knobs::submissionMs.value; // that it holds the device at most at once, as far as its passes can be cut
     /// Where maps, octree and what is gathered are looked for before the bake works, and kept as soon as they are done. Null: nowhere.
     BakeJournal* journal = nullptr;
 
@@ -80,7 +81,8 @@ struct BakeReport
     double bounceSeconds = 0.0;
     uint64_t gatherRays = 0; // to triangles, that surface light took: of texels, cells and finer texels, on by lobes, and to lights
     double prefilterSeconds = 0.0;
-    uint64_t peakDeviceBytes = 0; // besides what the device held before; with what other threads take of it meanwhile
+    double longestSubmission = 0.0; // seconds that the device was held at once, uploads and what lights move by with it
+    uint64_t peakDeviceBytes = 0;   // besides what the device held before; with what other threads take of it meanwhile
     /// Mean over all probes and directions of the radiance that arrives there, luminance, W/(m^2 sr): of direct light, emission and sky,
     /// and then what each bounce adds. Where surface light is gathered by triangles, bounces are of what rays that end bring: glossy
     /// surfaces turn on a share of them, which the others make up for.

@@ -22,6 +22,7 @@ void addSeconds(BakeReport& all, const BakeReport& one)
                                      &BakeReport::gatherSeconds, &BakeReport::bounceSeconds, &BakeReport::prefilterSeconds})
         all.*part += one.*part;
     all.gatherRays += one.gatherRays;
+    all.longestSubmission = std::max(all.longestSubmission, one.longestSubmission);
     all.peakDeviceBytes = std::max(all.peakDeviceBytes, one.peakDeviceBytes);
 }
 

@@ -39,12 +39,19 @@ void afterCompute(const Gpu& gpu, VkCommandBuffer cmd)
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
 }
 
+/// The fence of a submission says that copies are done, not that the host sees them: that takes a barrier to the host's stage.
+void forTheHost(const Gpu& gpu, VkCommandBuffer cmd)
+{
+    memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                  VK_ACCESS_2_HOST_READ_BIT);
+}
+
 } // namespace
 
 Result<std::unique_ptr<ProbeBaker>> ProbeBaker::create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
-                                                       bool surfaceLight, bool coatsByRays, ProbeFaces* faces)
+                                                       bool surfaceLight, bool coatsByRays, ProbeFaces* faces, PacedWork& work)
 {
-    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight, coatsByRays, faces));
+    std::unique_ptr<ProbeBaker> baker(new ProbeBaker(gpu, scene, info, surfaceLight, coatsByRays, faces, work));
     baker->octahedral = info.chart == gpu::kChartOctahedral;
     baker->emitters = scene.lights().shines;
     baker->radianceWords = radianceWordsPerProbe(info.chart, info.faceSize);
@@ -143,7 +150,7 @@ Status ProbeBaker::createPipelines()
           Pass{downsample[0], bake_downsample_radiance_comp, {}}, Pass{downsample[1], bake_downsample_moments_comp, {}},
           Pass{gather[0], bake_gather_irradiance_comp, {}}, Pass{gather[1], bake_gather_moments_comp, {}}})
     {
-        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush), constants);
+        auto made = Pipeline::compute(gpu, pass.code, pass.sets, sizeof(gpu::BakePush), constants, VK_PIPELINE_CREATE_DISPATCH_BASE_BIT);
         if (!made) return made.error();
         pass.pipeline = std::move(*made);
     }
@@ -171,13 +178,20 @@ gpu::BakePush ProbeBaker::pushFor(vec3 centre) const
     return push;
 }
 
-void ProbeBaker::dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const gpu::BakePush& push,
-                          uint32_t width, uint32_t layers)
+void ProbeBaker::add(std::string_view name, const Pipeline& pipeline, std::vector<VkDescriptorSet> sets, const gpu::BakePush& push,
+                     uint32_t width, uint32_t layers, std::function<void(VkCommandBuffer)> scan)
 {
-    pipeline.bind(cmd, sets);
-    pipeline.push(cmd, push);
-    gpu.vk.CmdDispatch(cmd, (width + 7) / 8, (width + 7) / 8, layers);
-    afterCompute(gpu, cmd);
+    const glm::uvec3 groups((width + 7) / 8, (width + 7) / 8, layers);
+    const uint32_t rows = groups.y * groups.z;
+    work.add(name, rows,
+             [=, this, &pipeline, sets = std::move(sets), scan = std::move(scan)](VkCommandBuffer cmd, uint32_t first, uint32_t count)
+             {
+                 pipeline.bind(cmd, sets);
+                 pipeline.push(cmd, push);
+                 dispatchRows(gpu, cmd, groups, first, count);
+                 afterCompute(gpu, cmd);
+                 if (scan && first + count == rows) scan(cmd);
+             });
 }
 
 void ProbeBaker::drawScene(VkCommandBuffer cmd, const gpu::SceneView& view)
@@ -195,19 +209,39 @@ void ProbeBaker::drawScene(VkCommandBuffer cmd, const gpu::SceneView& view)
     }
 }
 
-Status ProbeBaker::recordFaces(VkCommandBuffer cmd, uint32_t probe, vec3 centre)
+constexpr VkPipelineStageFlags2 kDepthTests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+
+void ProbeBaker::toAttachments(VkCommandBuffer cmd)
 {
-    const uint32_t n = info.faceSize;
-    // The faces of the probe before are dropped (undefined), and the passes that read them are done, since submit() waited: nothing to wait
-    // for.
+    // The faces of the probe before are dropped (undefined), and the passes that read them are done, since their submission was waited for:
+    // nothing to wait for.
     transition(gpu, cmd, surfaceImage,
                {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT});
-    const VkPipelineStageFlags2 tests = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
     // Depth likewise. Both stages of tests: which of them reads and writes depth is the driver's choice.
     transition(gpu, cmd, depthImage,
-               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE, tests, 0,
+               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE, kDepthTests, 0,
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
+}
+
+void ProbeBaker::toImagesRead(VkCommandBuffer cmd)
+{
+    // Read after write: compute passes alone sample the faces, to make the maps.
+    transition(gpu, cmd, surfaceImage,
+               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    // The same for depth, whichever tests wrote it.
+    transition(gpu, cmd, depthImage,
+               {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kDepthTests,
+                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+    scanImage(gpu, cmd, "bake faces", depthImage, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
+Status ProbeBaker::drawFace(VkCommandBuffer cmd, uint32_t probe, vec3 centre, uint32_t face)
+{
+    const uint32_t n = info.faceSize;
     VkRenderingAttachmentInfo color{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     color.imageView = surfaceImage.view();
     color.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -220,41 +254,38 @@ Status ProbeBaker::recordFaces(VkCommandBuffer cmd, uint32_t probe, vec3 centre)
     depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-    rendering.renderArea = {{0, 0}, {n, 6 * n}};
+    const VkRect2D area{{0, int32_t(n * face)}, {n, n}}; // what is cleared, and drawn to
+    rendering.renderArea = area;
     rendering.layerCount = 1;
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &color;
     rendering.pDepthAttachment = &depth;
+    const VkViewport viewport{0.0f, float(n) * float(face), float(n), float(n), 0.0f, 1.0f};
     gpu.vk.CmdBeginRendering(cmd, &rendering);
+    gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+    gpu.vk.CmdSetScissor(cmd, 0, 1, &area);
+    const gpu::SceneView view = faceView(centre, int(face), kProbeNear * info.diagonal);
     Status drawn = success();
-    for (int face = 0; face < 6 && drawn; ++face)
-    {
-        const VkViewport viewport{0.0f, float(n) * float(face), float(n), float(n), 0.0f, 1.0f};
-        const VkRect2D scissor{{0, int32_t(n) * face}, {n, n}};
-        gpu.vk.CmdSetViewport(cmd, 0, 1, &viewport);
-        gpu.vk.CmdSetScissor(cmd, 0, 1, &scissor);
-        const gpu::SceneView view = faceView(centre, face, kProbeNear * info.diagonal);
-        if (hostFaces)
-            drawn = hostFaces->draw(cmd, faceInWorld(view, info, probe, uint32_t(face)));
-        else
-            drawScene(cmd, view);
-    }
+    if (hostFaces)
+        drawn = hostFaces->draw(cmd, faceInWorld(view, info, probe, face));
+    else
+        drawScene(cmd, view);
     gpu.vk.CmdEndRendering(cmd);
-    // Read after write: compute passes alone sample the faces, to make the maps.
-    transition(gpu, cmd, surfaceImage,
-               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
-    // The same for depth, whichever tests wrote it.
-    transition(gpu, cmd, depthImage,
-               {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, tests,
-                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
-    scanImage(gpu, cmd, "bake faces", depthImage, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     return drawn;
 }
 
-void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
+void ProbeBaker::addFaces(uint32_t probe, vec3 centre, Status& drawn)
+{
+    work.add("bake faces", 6,
+             [=, this, &drawn](VkCommandBuffer cmd, uint32_t first, uint32_t count)
+             {
+                 if (first == 0) toAttachments(cmd);
+                 for (uint32_t face = first; face < first + count && drawn; ++face) drawn = drawFace(cmd, probe, centre, face);
+                 if (first + count == 6) toImagesRead(cmd);
+             });
+}
+
+void ProbeBaker::addMaps(vec3 centre)
 {
     const uint32_t n = info.faceSize;
     gpu::BakePush push = pushFor(centre);
@@ -267,35 +298,44 @@ void ProbeBaker::recordMaps(VkCommandBuffer cmd, vec3 centre)
         push.emitted = emitters ? faceLight.address() + VkDeviceAddress(12) * n * n * 4 : 0;
         push.faceWords = n * n;
     }
-    const VkDescriptorSet both[] = {scene.descriptorSet(), images.handle()};
-    dispatch(cmd, surfacePass, both, push, n, 6);
-    const auto scanLight = [&](const char* pass, VkDeviceSize first)
+    const auto scanLight = [this](VkCommandBuffer cmd, const char* pass, VkDeviceSize first)
     { scanBuffer(gpu, cmd, pass, light, {.kind = gpu::kScanRadiance, .first = first, .count = radianceWords}); };
+    const auto scanSurfaces = [=, this](VkCommandBuffer cmd)
+    {
+        if (octahedral)
+        {
+            scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
+            scanBuffer(gpu, cmd, "bake surfaces", faceLight, {.kind = gpu::kScanRadiance, .count = VkDeviceSize(6) * n * n});
+            return;
+        }
+        scanLight(cmd, "bake surfaces", 0);
+        if (emitters) scanLight(cmd, "bake surfaces", 2 * radianceWords);
+    };
+    add("bake surfaces", surfacePass, {scene.descriptorSet(), images.handle()}, push, n, 6, scanSurfaces);
     if (!octahedral)
     {
-        scanLight("bake surfaces", 0);
-        if (emitters) scanLight("bake surfaces", 2 * radianceWords);
         for (push.level = 2; push.level <= info.topLevel; push.level += 2)
-            dispatch(cmd, chainPass, {}, push, (n + (1u << push.level) - 1) >> push.level, 6);
-        push.level = 0; // the far bounds
-        dispatch(cmd, chainPass, {}, push, uint32_t(std::ceil(std::sqrt(double(push.faceWords - n * n)))), 6);
-        scanBuffer(gpu, cmd, "bake chain", words, {.kind = gpu::kScanNearness, .count = info.wordsPerProbe});
-        if (info.surfaceSize > 0) dispatch(cmd, texelPass, {}, push, info.surfaceSize, 6);
+            add("bake chain", chainPass, {}, push, (n + (1u << push.level) - 1) >> push.level, 6);
+        push.level = 0;
+        add("bake far bounds", chainPass, {}, push, uint32_t(std::ceil(std::sqrt(double(push.faceWords - n * n)))), 6,
+            [this](VkCommandBuffer cmd)
+            { scanBuffer(gpu, cmd, "bake chain", words, {.kind = gpu::kScanNearness, .count = info.wordsPerProbe}); });
+        if (info.surfaceSize > 0) add("bake texels", texelPass, {}, push, info.surfaceSize, 6);
         return;
     }
-    scanBuffer(gpu, cmd, "bake surfaces", faceWords, {.kind = gpu::kScanNearness});
-    scanBuffer(gpu, cmd, "bake surfaces", faceLight, {.kind = gpu::kScanRadiance, .count = VkDeviceSize(6) * n * n});
     // From here on the targets are the field's again, and the faces are what is read.
     push = pushFor(centre);
     push.extra = faceLight.address();
-    const VkDescriptorSet imagesOnly[] = {images.handle()};
-    dispatch(cmd, octahedralPass, imagesOnly, push, n, 1);
-    dispatch(cmd, lowPass, {}, push, n / gpu::kLowFactor, 1);
-    scanBuffer(gpu, cmd, "bake octahedral map", words, {.kind = gpu::kScanDistance, .count = info.wordsPerProbe});
-    scanLight("bake octahedral map", 0);
+    add("bake octahedral map", octahedralPass, {images.handle()}, push, n, 1);
+    add("bake low map", lowPass, {}, push, n / gpu::kLowFactor, 1,
+        [=, this](VkCommandBuffer cmd)
+        {
+            scanBuffer(gpu, cmd, "bake octahedral map", words, {.kind = gpu::kScanDistance, .count = info.wordsPerProbe});
+            scanLight(cmd, "bake octahedral map", 0);
+        });
 }
 
-void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
+void ProbeBaker::addGather(bool moments)
 {
     gpu::BakePush push = pushFor(vec3(0.0f));
     // A direction's sum runs over all cells, so texels are joined into coarse ones first. The moments' lobe is narrower (cos^50; moments:
@@ -303,14 +343,15 @@ void ProbeBaker::recordGather(VkCommandBuffer cmd, bool moments)
     push.level = (octahedral ? 32u : 16u) * (moments ? 2u : 1u);
     while (info.faceSize % push.level != 0) --push.level; // cells of whole texels
     push.extra = cells.address();
-    const uint32_t faces = octahedral ? 1 : 6;
-    dispatch(cmd, downsample[moments], {}, push, push.level, faces);
-    scanBuffer(gpu, cmd, moments ? "bake moments" : "bake irradiance", cells, {.count = VkDeviceSize(4) * faces * push.level * push.level});
+    const uint32_t faces = octahedral ? 1 : 6, cellCount = faces * push.level * push.level;
+    const char* name = moments ? "bake moments" : "bake irradiance";
+    add(moments ? "bake cells of moments" : "bake cells", downsample[moments], {}, push, push.level, faces,
+        [=, this](VkCommandBuffer cmd) { scanBuffer(gpu, cmd, name, cells, {.count = VkDeviceSize(4) * cellCount}); });
     push.words = irradiance.address();
-    dispatch(cmd, gather[moments], {}, push, gpu::kIrradianceSize, 1);
-    scanBuffer(
-        gpu, cmd, moments ? "bake moments" : "bake irradiance", irradiance,
-        {.kind = gpu::kScanIrradiance, .stride = 2, .mask = moments ? 2u : 1u}); // the other half is not made yet, or is the last bounce's
+    // Scanned: one half alone; the other is not made yet, or is the last bounce's.
+    add(name, gather[moments], {}, push, gpu::kIrradianceSize, 1,
+        [=, this](VkCommandBuffer cmd)
+        { scanBuffer(gpu, cmd, name, irradiance, {.kind = gpu::kScanIrradiance, .stride = 2, .mask = moments ? 2u : 1u}); });
 }
 
 void ProbeBaker::copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from)
@@ -328,23 +369,21 @@ Status ProbeBaker::bakeDirect(uint32_t probe, vec3 centre, const ProbeTarget& ta
     const VkDeviceSize irradianceAt = wordBytes + lightBytes, facesAt = irradianceAt + kIrradianceWordsPerProbe * 4;
     const VkDeviceSize texelsAt = facesAt + faceBytes;
     Status drawn = success();
-    auto status = gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            drawn = recordFaces(cmd, probe, centre);
-            recordMaps(cmd, centre);
-            recordGather(cmd, false);
-            recordGather(cmd, true);
-            copyOut(cmd, std::array{VkBufferCopy{0, 0, wordBytes}}, words);
-            copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
-            copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
-            if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
-            if (texels) copyOut(cmd, std::array{VkBufferCopy{0, texelsAt, 4 * texelWords()}}, texels);
-            // The fence that submit() waits for says that the copies are done, not that the host sees them: that takes a barrier to the
-            // host's stage.
-            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
-                          VK_ACCESS_2_HOST_READ_BIT);
-        });
+    addFaces(probe, centre, drawn);
+    addMaps(centre);
+    addGather(false);
+    addGather(true);
+    work.add("bake copies", 1,
+             [=, this](VkCommandBuffer cmd, uint32_t, uint32_t)
+             {
+                 copyOut(cmd, std::array{VkBufferCopy{0, 0, wordBytes}}, words);
+                 copyOut(cmd, std::array{VkBufferCopy{0, wordBytes, lightBytes}}, light);
+                 copyOut(cmd, std::array{VkBufferCopy{0, irradianceAt, kIrradianceWordsPerProbe * 4}}, irradiance);
+                 if (octahedral) copyOut(cmd, std::array{VkBufferCopy{0, facesAt, faceBytes}}, faceWords);
+                 if (texels) copyOut(cmd, std::array{VkBufferCopy{0, texelsAt, 4 * texelWords()}}, texels);
+                 forTheHost(gpu, cmd);
+             });
+    const Status status = work.run();
     if (!drawn) return drawn; // what was recorded before is done, and is nobody's
     if (!status) return status;
     const std::byte* from = transfer.mapped();
@@ -365,7 +404,7 @@ Status ProbeBaker::bakeBounce(uint32_t probe, vec3 centre, const LightField& fie
     {
         const VkDescriptorSetLayout sets[] = {field.layout()};
         const Spirv code = surfacesLit ? Spirv(bake_bounce_surface_comp) : Spirv(bake_bounce_comp);
-        auto made = Pipeline::compute(gpu, code, sets, sizeof(gpu::BakePush), shaderConstants(field));
+        auto made = Pipeline::compute(gpu, code, sets, sizeof(gpu::BakePush), shaderConstants(field), VK_PIPELINE_CREATE_DISPATCH_BASE_BIT);
         if (!made) return made.error();
         bouncePass = std::move(*made);
     }
@@ -375,32 +414,34 @@ Status ProbeBaker::bakeBounce(uint32_t probe, vec3 centre, const LightField& fie
     std::memcpy(transfer.mapped() + wordBytes, target.surface.data(), radianceBytes);
     std::memcpy(transfer.mapped() + wordBytes + radianceBytes, direct.data(), radianceBytes);
     if (emitters) std::memcpy(transfer.mapped() + wordBytes + 2 * radianceBytes, target.emitted.data(), radianceBytes);
-    auto status = gpu.submit(
-        [&](VkCommandBuffer cmd)
-        {
-            const VkBufferCopy toWords{0, 0, wordBytes};
-            const VkBufferCopy toLight[] = {{wordBytes, radianceBytes, radianceBytes},
-                                            {wordBytes + radianceBytes, 3 * radianceBytes, radianceBytes},
-                                            {wordBytes + 2 * radianceBytes, 2 * radianceBytes, radianceBytes}};
-            gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), words.handle(), 1, &toWords);
-            gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), emitters ? 3 : 2, toLight);
-            // Read after write: the passes read what is copied in. Write after read: the copies out, below, overwrite the transfer buffer
-            // that these copies read. What the host wrote into it is visible by the submit itself.
-            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
-                          VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
-                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
-            const VkDescriptorSet sets[] = {field.descriptorSet()};
-            gpu::BakePush push = pushFor(centre);
-            push.probe = probe;
-            dispatch(cmd, bouncePass, sets, push, info.faceSize, octahedral ? 1 : 6);
-            scanBuffer(gpu, cmd, "bake bounce", light, {.kind = gpu::kScanRadiance, .count = radianceWords});
-            recordGather(cmd, false);
-            copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
-            copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);
-            // For the host's reads, which the fence alone doesn't cover.
-            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
-                          VK_ACCESS_2_HOST_READ_BIT);
-        });
+    work.add("bake copies", 1,
+             [=, this](VkCommandBuffer cmd, uint32_t, uint32_t)
+             {
+                 const VkBufferCopy toWords{0, 0, wordBytes};
+                 const VkBufferCopy toLight[] = {{wordBytes, radianceBytes, radianceBytes},
+                                                 {wordBytes + radianceBytes, 3 * radianceBytes, radianceBytes},
+                                                 {wordBytes + 2 * radianceBytes, 2 * radianceBytes, radianceBytes}};
+                 gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), words.handle(), 1, &toWords);
+                 gpu.vk.CmdCopyBuffer(cmd, transfer.handle(), light.handle(), emitters ? 3 : 2, toLight);
+                 // Read after write: the passes read what is copied in. Write after read: the copies out, below, overwrite the transfer
+                 // buffer that these copies read. What the host wrote into it is visible by the submit itself.
+                 memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
+                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
+                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+             });
+    gpu::BakePush push = pushFor(centre);
+    push.probe = probe;
+    add("bake bounce", bouncePass, {field.descriptorSet()}, push, info.faceSize, octahedral ? 1 : 6,
+        [this](VkCommandBuffer cmd) { scanBuffer(gpu, cmd, "bake bounce", light, {.kind = gpu::kScanRadiance, .count = radianceWords}); });
+    addGather(false);
+    work.add("bake copies", 1,
+             [=, this](VkCommandBuffer cmd, uint32_t, uint32_t)
+             {
+                 copyOut(cmd, std::array{VkBufferCopy{0, 0, radianceBytes}}, light);
+                 copyOut(cmd, std::array{VkBufferCopy{0, radianceBytes, kIrradianceWordsPerProbe * 4}}, irradiance);
+                 forTheHost(gpu, cmd);
+             });
+    const Status status = work.run();
     if (!status) return status;
     std::memcpy(target.radiance.data(), transfer.mapped(), radianceBytes);
     std::vector<uint32_t> fresh(kIrradianceWordsPerProbe);

@@ -7,6 +7,7 @@
 #include "runtime/bake/probe_faces.h"
 #include "runtime/field/light_field.h"
 #include "runtime/scene/device_scene.h"
+#include "runtime/vulkan/paced_work.h"
 #include "shaders/shared/bake_passes.h"
 
 namespace sconce
@@ -26,15 +27,16 @@ struct ProbeTarget
     std::span<gpu::SurfaceTexel> texels; // [6 surfaceSize^2]; empty without surface light
 };
 
-/// The GPU's part of a bake, one probe at a time: each call submits one command buffer and waits.
+/// The GPU's part of a bake, one probe at a time: each call submits, and waits.
 class ProbeBaker
 {
 public:
     /// @param surfaceLight  whether surfaces are lit by surface light: direct light is then of what has no extent alone
     /// @param coatsByRays   whether rays to triangles find what coats reflect of it, so that it isn't in the probes' light
     /// @param faces         draws in place of the scene's mesh; null: the mesh is drawn
+    /// @param work          that it is done by
     static Result<std::unique_ptr<ProbeBaker>> create(Gpu& gpu, const DeviceScene& scene, const gpu::LightFieldInfo& info,
-                                                      bool surfaceLight, bool coatsByRays, ProbeFaces* faces);
+                                                      bool surfaceLight, bool coatsByRays, ProbeFaces* faces, PacedWork& work);
 
     /// Faces, direct light, chain or octahedral map, and the irradiance of what the surfaces reflect of that light.
     /// Errors: those of ProbeFaces::draw(), outOfMemory, deviceFailure.
@@ -47,18 +49,24 @@ public:
 
 private:
     ProbeBaker(Gpu& device, const DeviceScene& deviceScene, const gpu::LightFieldInfo& fieldInfo, bool surfaceLight, bool coatsByRays,
-               ProbeFaces* facesOfHost)
-        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight), coats(coatsByRays), hostFaces(facesOfHost)
+               ProbeFaces* facesOfHost, PacedWork& paced)
+        : gpu(device), scene(deviceScene), info(fieldInfo), surfacesLit(surfaceLight), coats(coatsByRays), hostFaces(facesOfHost),
+          work(paced)
     {
     }
     Status createPipelines();
     Status createBuffers();
     void drawScene(VkCommandBuffer cmd, const gpu::SceneView& view);
-    Status recordFaces(VkCommandBuffer cmd, uint32_t probe, vec3 centre);
-    void recordMaps(VkCommandBuffer cmd, vec3 centre);
-    void recordGather(VkCommandBuffer cmd, bool moments);
-    void dispatch(VkCommandBuffer cmd, const Pipeline& pipeline, std::span<const VkDescriptorSet> sets, const gpu::BakePush& push,
-                  uint32_t width, uint32_t layers);
+    void toAttachments(VkCommandBuffer cmd);
+    void toImagesRead(VkCommandBuffer cmd);
+    Status drawFace(VkCommandBuffer cmd, uint32_t probe, vec3 centre, uint32_t face);
+    /// @param drawn  of all faces; must be there until the work is run
+    void addFaces(uint32_t probe, vec3 centre, Status& drawn);
+    void addMaps(vec3 centre);
+    void addGather(bool moments);
+    /// A compute pass of width x width invocations in so many layers. @param scan  records after the last of it
+    void add(std::string_view name, const Pipeline& pipeline, std::vector<VkDescriptorSet> sets, const gpu::BakePush& push, uint32_t width,
+             uint32_t layers, std::function<void(VkCommandBuffer)> scan = {});
     void copyOut(VkCommandBuffer cmd, std::span<const VkBufferCopy> pieces, const Buffer& from);
     gpu::BakePush pushFor(vec3 centre) const;
     uint32_t texelWords() const { return 6 * info.surfaceSize * info.surfaceSize * uint32_t(sizeof(gpu::SurfaceTexel) / 4); }
@@ -69,6 +77,7 @@ private:
     const bool surfacesLit; // by surface light
     const bool coats;       // are lit by rays
     ProbeFaces* hostFaces;  // null: the scene's mesh is drawn
+    PacedWork& work;
     bool octahedral = false;
     bool emitters = false;      // whether emission is kept a texel
     uint32_t radianceWords = 0; // of the chart

@@ -73,7 +73,8 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
           Pass{&bouncePass, surface_bounce_comp, 1}, Pass{&tiltPass, surface_tilt_comp, 1}, Pass{&filterPass, surface_filter_comp, 1}})
     {
         if (ofFieldRays && desc.triangles) continue; // two of the largest there are, and never run
-        auto made = Pipeline::compute(*gpu, code, std::span(sets).first(setCount), sizeof(gpu::SurfacePush), constants);
+        auto made = Pipeline::compute(*gpu, code, std::span(sets).first(setCount), sizeof(gpu::SurfacePush), constants,
+                                      VK_PIPELINE_CREATE_DISPATCH_BASE_BIT);
         if (!made) return made.error();
         *pipeline = std::move(*made);
     }
@@ -114,19 +115,27 @@ gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
 Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name,
                               const Buffer* floats)
 {
-    return gpu->submit(
-        [&](VkCommandBuffer cmd)
-        {
-            const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
-            pipeline.bind(cmd, std::span(sets).first(withScene ? 2 : 1));
-            pipeline.push(cmd, push);
-            const uint32_t groups = (field.info().surfaceSize + 7) / 8;
-            gpu->vk.CmdDispatch(cmd, groups, groups, 6);
-            if (floats) scanBuffer(*gpu, cmd, name, *floats, {});
-            // For the copies out, which are of the next submit.
-            memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
-        });
+    const uint32_t side = (field.info().surfaceSize + 7) / 8;
+    return dispatch(pipeline, withScene, push, name, glm::uvec3(side, side, 6), floats);
+}
+
+Status SurfaceBaker::dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name, glm::uvec3 groups,
+                              const Buffer* floats)
+{
+    const uint32_t rows = groups.y * groups.z;
+    desc.work->add(name, rows,
+                   [&](VkCommandBuffer cmd, uint32_t firstRow, uint32_t count)
+                   {
+                       const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
+                       pipeline.bind(cmd, std::span(sets).first(withScene ? 2 : 1));
+                       pipeline.push(cmd, push);
+                       dispatchRows(*gpu, cmd, groups, firstRow, count);
+                       if (floats && firstRow + count == rows) scanBuffer(*gpu, cmd, name, *floats, {});
+                       // For the copies out, which are of the next submit.
+                       memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
+                   });
+    return desc.work->run();
 }
 
 Status SurfaceBaker::findCells()
@@ -255,19 +264,11 @@ Result<double> SurfaceBaker::meanSent()
 /// Of what the texels sent before the last bounce, as what arrived at them.
 Status SurfaceBaker::gatherCells()
 {
-    return gpu->submit(
-        [&](VkCommandBuffer cmd)
-        {
-            const VkDescriptorSet sets[] = {field.descriptorSet(), scene->descriptorSet()};
-            cellPass.bind(cmd, sets);
-            gpu::SurfacePush push = pushFor(0, desc.rays);
-            push.sent = filtered.address();
-            cellPass.push(cmd, push);
-            const size_t facings = 6 * cellWords(field.info()) / gpu::kCellWords;
-            gpu->vk.CmdDispatch(cmd, workgroupsInARow(facings, gpu::kCellGroup), 1, 1);
-            memoryBarrier(*gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
-        });
+    gpu::SurfacePush push = pushFor(0, desc.rays);
+    push.sent = filtered.address();
+    const size_t facings = 6 * cellWords(field.info()) / gpu::kCellWords;
+    const size_t row = size_t(gpu::kCellGroup) * gpu::kCellRow;
+    return dispatch(cellPass, true, push, "cell gather", glm::uvec3(gpu::kCellRow, (facings + row - 1) / row, 1), nullptr);
 }
 
 /// The same from what rays to triangles found.

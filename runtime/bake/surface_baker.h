@@ -11,6 +11,7 @@
 #include "runtime/bake/triangle_gather.h"
 #include "runtime/field/light_field.h"
 #include "runtime/scene/device_scene.h"
+#include "runtime/vulkan/paced_work.h"
 #include "shaders/shared/bake_passes.h"
 
 namespace sconce
@@ -42,6 +43,7 @@ public:
         const TriangleGather* triangles = nullptr; // gathers in their place, by as many rays
         bool live = false;                         // transport() will be asked for; with triangles
         BakeParts parts = {};                      // where gathered light is looked for and kept
+        PacedWork* work = nullptr;                 // that passes are done by; never null
     };
     /// @param field   with distances, octree and surfaceSize; it is only read
     /// @param texels  of all probes, [probe][6 surfaceSize^2]
@@ -78,7 +80,10 @@ private:
     Status gatherCells();
     Status cellsFromTriangles(std::span<uint32_t> words);
     /// @param floats  what the pass writes, to be scanned for numbers that are none where that is asked for; null: it writes words
+    /// Over a probe's texels.
     Status dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name, const Buffer* floats);
+    Status dispatch(const Pipeline& pipeline, bool withScene, const gpu::SurfacePush& push, const char* name, glm::uvec3 groups,
+                    const Buffer* floats);
     gpu::SurfacePush pushFor(uint32_t probe, uint32_t rays) const;
     Status findTilts();
     Status gatherTriangles(uint32_t probe);

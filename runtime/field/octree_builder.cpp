@@ -24,13 +24,12 @@ namespace
 
 using glm::ivec3;
 
-constexpr uint64_t kJudgesASubmit = 1u << 26; // visibility tests: about a second of software Vulkan on two cores at most
-constexpr uint32_t kSamplesASubmit = 1u << 21, kBlocksASubmit = 1u << 15;
+constexpr uint32_t kSamplesAUnit = 1u << 14, kSamplesADispatch = 1u << 21, kBlocksADispatch = 1u << 15; // of work; at most
 
 class Builder
 {
 public:
-    Builder(Gpu& device, const OctreePlan& made) : gpu(device), plan(made) {}
+    Builder(Gpu& device, const OctreePlan& made, PacedWork& paced) : gpu(device), plan(made), work(paced) {}
 
     Status create(const ProbeMaps& maps)
     {
@@ -43,7 +42,7 @@ public:
               {&fillPass, octree_fill_comp, {}},
               {&collapsePass, octree_collapse_comp, {}}})
         {
-            auto compiled = Pipeline::compute(gpu, code, {}, sizeof(gpu::OctreePush), constants);
+            auto compiled = Pipeline::compute(gpu, code, {}, sizeof(gpu::OctreePush), constants, VK_PIPELINE_CREATE_DISPATCH_BASE_BIT);
             if (!compiled) return compiled.error();
             *pipeline = std::move(*compiled);
         }
@@ -67,7 +66,7 @@ public:
         made = gpu.makeBuffer(blockCount() * sizeof(uint32_t), 0, MemoryUse::device, "The octree's blocks with surfaces");
         if (!made) return made.error();
         blocks = std::move(*made);
-        const size_t words = std::min<size_t>(blockCount(), kBlocksASubmit) * (plan.build.candidates + 1);
+        const size_t words = std::min<size_t>(blockCount(), kBlocksADispatch) * (plan.build.candidates + 1);
         made = gpu.makeBuffer(words * sizeof(uint32_t), 0, MemoryUse::device, "What the octree's blocks may ask");
         if (!made) return made.error();
         sights = std::move(*made);
@@ -92,12 +91,18 @@ public:
                               VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
             });
-        for (uint32_t first = 0; status && first < plan.samples; first += kSamplesASubmit)
+        if (!status) return status;
+        for (uint32_t start = 0; start < plan.samples; start += kSamplesADispatch)
         {
-            const uint32_t count = std::min(kSamplesASubmit, plan.samples - first);
-            status = dispatch(surfelPass, first, count, {}, {(count + 63) / 64, 1, 1});
+            const uint32_t some = std::min(kSamplesADispatch, plan.samples - start);
+            work.add("octree surfels", (some + kSamplesAUnit - 1) / kSamplesAUnit,
+                     [=, this](VkCommandBuffer cmd, uint32_t first, uint32_t count)
+                     {
+                         const uint32_t samples = std::min(kSamplesAUnit * count, some - kSamplesAUnit * first);
+                         record(cmd, surfelPass, start + kSamplesAUnit * first, samples, {}, {(samples + 63) / 64, 1, 1});
+                     });
         }
-        return status;
+        return work.run();
     }
 
     /// Lists of all voxels, into lists[0]: first of the blocks with surfaces, then of the others.
@@ -112,8 +117,8 @@ public:
         if (!uploaded) return uploaded.error();
         blocks = std::move(*uploaded);
         const auto dense = uint32_t(open - numbers.begin());
-        if (auto status = rankBlocks(rankPass, 0, dense, gpu::kFreeSamples + gpu::kSurfelSlots, progress); !status) return status;
-        return rankBlocks(openRankPass, dense, uint32_t(numbers.size()), gpu::kFreeSamples, progress);
+        if (auto status = rankBlocks(rankPass, "octree of surfaces", 0, dense, progress); !status) return status;
+        return rankBlocks(openRankPass, "octree of the open", dense, uint32_t(numbers.size()), progress);
     }
 
     /// Spreads lists into what has none, then joins them level by level.
@@ -121,12 +126,12 @@ public:
     {
         LevelLists levels(size_t(plan.tree.topShift) + 1);
         for (int step = 0; step < kFillSteps; ++step)
-            if (auto status = dispatchNodes(fillPass, plan.build.count); !status) return status.error();
+            if (auto status = dispatchNodes(fillPass, "octree fill", plan.build.count); !status) return status.error();
         for (size_t level = 0; level < levels.size(); ++level)
         {
             const ivec3 size = plan.build.count >> int(level);
             if (level > 0)
-                if (auto status = dispatchNodes(collapsePass, size); !status) return status.error();
+                if (auto status = dispatchNodes(collapsePass, "octree collapse", size); !status) return status.error();
             levels[level].resize(size_t(size.x) * size_t(size.y) * size_t(size.z));
             if (auto status = gpu.download(lists[0], 0, std::as_writable_bytes(std::span(levels[level]))); !status) return status.error();
         }
@@ -140,34 +145,27 @@ private:
         return size_t(count.x) * size_t(count.y) * size_t(count.z);
     }
 
-    /// @param points  that are judged in a voxel, at most
-    Status rankBlocks(const Pipeline& pass, uint32_t first, uint32_t end, uint32_t points, const Progress& progress)
+    Status rankBlocks(const Pipeline& pass, const char* name, uint32_t first, uint32_t end, const Progress& progress)
     {
-        // A submit must end soon: drivers stop one that hangs, and progress and cancellation come between submits.
-        const uint64_t judgesABlock = uint64_t(gpu::kBlock * gpu::kBlock * gpu::kBlock) * plan.build.candidates * points;
-        const uint32_t together = uint32_t(std::clamp<uint64_t>(kJudgesASubmit / judgesABlock, 1, kBlocksASubmit));
-        for (; first < end; first += together)
+        // As many as the room for what they ask takes; how many of them at once is the pace's choice.
+        for (; first < end; first += kBlocksADispatch)
         {
-            if (!report(progress, "octree", double(first) / double(blockCount())))
-                return Error{ErrorCode::cancelled, "cancelled while building the octree"};
-            const uint32_t count = std::min(together, end - first);
-            const auto status = gpu.submit(
-                [&](VkCommandBuffer cmd)
-                {
-                    record(cmd, sightPass, first, count, {}, {(count + 63) / 64, 1, 1});
-                    record(cmd, pass, first, count, {}, {count, 1, 1});
-                });
-            if (!status) return status;
+            const uint32_t some = std::min(kBlocksADispatch, end - first);
+            work.add(name, some,
+                     [&, first](VkCommandBuffer cmd, uint32_t from, uint32_t count)
+                     {
+                         record(cmd, sightPass, first + from, count, {}, {(count + 63) / 64, 1, 1});
+                         record(cmd, pass, first + from, count, {}, {count, 1, 1});
+                     });
+            if (auto status =
+                    work.run([&](double done) { return report(progress, "octree", (first + done * some) / double(blockCount())); });
+                !status)
+                return status;
         }
         return success();
     }
 
-    Status dispatch(const Pipeline& pipeline, uint32_t first, uint32_t count, ivec3 size, glm::uvec3 groups)
-    {
-        return gpu.submit([&](VkCommandBuffer cmd) { record(cmd, pipeline, first, count, size, groups); });
-    }
-
-    void record(VkCommandBuffer cmd, const Pipeline& pipeline, uint32_t first, uint32_t count, ivec3 size, glm::uvec3 groups)
+    void prepare(VkCommandBuffer cmd, const Pipeline& pipeline, uint32_t first, uint32_t count, ivec3 size)
     {
         // What an earlier submit wrote is visible: its fence was waited for, and only device memory access is left to order.
         // From all commands: that was an upload's copy, the fill or another pass.
@@ -176,18 +174,30 @@ private:
         pipeline.bind(cmd);
         pipeline.push(cmd, gpu::OctreePush{inputs.address(), surfels.address(), lists[1].address(), lists[0].address(), blocks.address(),
                                            sights.address(), first, count, size, 0});
+    }
+    void record(VkCommandBuffer cmd, const Pipeline& pipeline, uint32_t first, uint32_t count, ivec3 size, glm::uvec3 groups)
+    {
+        prepare(cmd, pipeline, first, count, size);
         gpu.vk.CmdDispatch(cmd, groups.x, groups.y, groups.z);
     }
 
     /// A pass from lists[0] to lists[1], which change names: the result is lists[0] again.
-    Status dispatchNodes(const Pipeline& pipeline, ivec3 size)
+    Status dispatchNodes(const Pipeline& pipeline, const char* name, ivec3 size)
     {
         std::swap(lists[0], lists[1]);
-        return dispatch(pipeline, 0, 0, size, glm::uvec3((size + 3) / 4));
+        const glm::uvec3 groups((size + 3) / 4);
+        work.add(name, groups.y * groups.z,
+                 [&, size](VkCommandBuffer cmd, uint32_t first, uint32_t count)
+                 {
+                     prepare(cmd, pipeline, 0, 0, size);
+                     dispatchRows(gpu, cmd, groups, first, count);
+                 });
+        return work.run();
     }
 
     Gpu& gpu;
     const OctreePlan& plan;
+    PacedWork& work;
     Pipeline surfelPass, sightPass, rankPass, openRankPass, fillPass, collapsePass;
     Buffer distance, probes, candidates, inputs, surfels, blocks, sights;
     Buffer lists[2]; // read: [1], written: [0]
@@ -195,11 +205,12 @@ private:
 
 } // namespace
 
-Result<Octree> buildOctreeOnDevice(Gpu& gpu, const ProbeMaps& maps, const OctreeSettings& settings, const Progress& progress)
+Result<Octree> buildOctreeOnDevice(Gpu& gpu, PacedWork& work, const ProbeMaps& maps, const OctreeSettings& settings,
+                                   const Progress& progress)
 {
     auto plan = planOctree(maps, settings);
     if (!plan) return plan.error();
-    Builder builder(gpu, *plan);
+    Builder builder(gpu, *plan, work);
     if (auto status = builder.create(maps); !status) return status.error();
     if (auto status = builder.collectSurfels(); !status) return status.error();
     if (auto status = builder.rank(progress); !status) return status.error();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 
@@ -291,6 +292,7 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
     info.pCommandBuffers = &commands;
+    const auto begun = std::chrono::steady_clock::now();
     result = host.submit ? host.submit(info, done) : vk.QueueSubmit(host.queue, 1, &info, done);
     if (result != VK_SUCCESS) return failure("vkQueueSubmit", result);
     const auto wait = [&] { return vk.WaitForFences(host.device, 1, &done, VK_TRUE, UINT64_MAX); };
@@ -298,6 +300,7 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     // Short of memory it hasn't waited, and the device still uses what the caller would give back now; a lost device doesn't.
     if (result != VK_SUCCESS && result != VK_ERROR_DEVICE_LOST) result = wait();
     if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
+    longestSeconds = std::max(longestSeconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
     // Read after the fence: only now have the scans run.
     return scan ? scan->findings() : success();
 }

@@ -112,6 +112,9 @@ public:
     /// Records into a command buffer of our own, submits it to the host's queue and waits. With SCONCE_NAN_SCAN=1: fails with what was
     /// found.
     Status submit(const std::function<void(VkCommandBuffer)>& record);
+    /// Seconds from submission to end of the longest submit() since this was restarted, with what it waited for others.
+    double longest() const { return longestSeconds; }
+    void restartLongest() { longestSeconds = 0.0; }
     /// Copies through a staging buffer of at most 16 MiB, which stays for the next copy.
     Status upload(const Buffer& target, VkDeviceSize offset, std::span<const std::byte> bytes);
     Status download(const Buffer& source, VkDeviceSize offset, std::span<std::byte> bytes);
@@ -163,6 +166,7 @@ private:
     VkCommandBuffer commands = VK_NULL_HANDLE;
     Handle<VkFence, &VulkanFunctions::DestroyFence> fence;
     Buffer staging;
+    double longestSeconds = 0.0;
     using SetLayout = Handle<VkDescriptorSetLayout, &VulkanFunctions::DestroyDescriptorSetLayout>;
     std::mutex common;                                                             // of the next two
     std::map<std::vector<std::array<uint32_t, 4>>, SetLayout> setLayouts;          // by binding, type, count and stages of each

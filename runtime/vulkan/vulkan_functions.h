@@ -25,6 +25,7 @@ namespace sconce
     X(CmdCopyBufferToImage)                                                                                                                \
     X(CmdCopyImageToBuffer)                                                                                                                \
     X(CmdDispatch)                                                                                                                         \
+    X(CmdDispatchBase)                                                                                                                     \
     X(CmdDispatchIndirect)                                                                                                                 \
     X(CmdDraw)                                                                                                                             \
     X(CmdDrawIndexed)                                                                                                                      \

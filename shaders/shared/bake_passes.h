@@ -86,6 +86,7 @@ SCONCE_CHECK_SIZE(SurfacePush, 96);
 const uint kMostShadowRays = 32u;
 const float kMostSlope = 5.0f; // tangent of a ray's angle to the normal that a tilt's moment counts
 const uint kCellGroup = 64u; // facings of cells a workgroup of cell_gather.comp
+const uint kCellRow = 64u;   // of its groups a row
 
 SCONCE_STRUCTS_END
 #endif

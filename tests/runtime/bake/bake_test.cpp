@@ -493,6 +493,29 @@ TEST_F(Bake, SameInputGivesTheSameBytes)
     EXPECT_EQ(std::memcmp(a.probes.data(), b.probes.data(), a.probes.size() * sizeof(gpu::ProbeHeader)), 0);
 }
 
+// However a bake is cut into submissions, and however little its device is held at once; of either chart, and gathered through the field.
+TEST_F(Bake, SubmissionsOfAnyLengthGiveTheSameBytes)
+{
+    const Scene scene = litRoom();
+    const std::vector<vec3> probes = {vec3(0.0f), vec3(1.0f, 1.0f, 1.0f)};
+    for (const uint32_t chart : {gpu::kChartCube, gpu::kChartOctahedral})
+    {
+        BakeSettings settings = settingsFor(64, 1);
+        settings.chart = chart;
+        settings.surfaceTexels = chart == gpu::kChartCube ? 26 : 0;
+        settings.submissionMs = knobs::submissionMs.most;
+        const FieldData whole = bake(scene, probes, settings);
+        EXPECT_GT(cost.longestSubmission, 0.0);
+        settings.submissionMs = knobs::submissionMs.least;
+        const FieldData cut = bake(scene, probes, settings);
+        for (const auto words :
+             {&FieldData::distance, &FieldData::radiance, &FieldData::irradiance, &FieldData::prefiltered, &FieldData::surfaceLight})
+            EXPECT_TRUE(whole.*words == cut.*words);
+        EXPECT_EQ(whole.octree.texels, cut.octree.texels);
+        EXPECT_EQ(whole.surfaceLight.empty(), chart != gpu::kChartCube);
+    }
+}
+
 TEST_F(Bake, ProbeAloneEqualsItselfAmongMany)
 {
     const Scene scene = litRoom();
@@ -525,6 +548,9 @@ TEST_F(Bake, BadSettingsAreNamed)
     EXPECT_NE(refusal({}, settingsFor(64)).find("0 probes"), std::string::npos);
     EXPECT_NE(refusal({vec3(0.0f)}, settingsFor(100)).find("resolution is 100"), std::string::npos);
     EXPECT_NE(refusal({vec3(0.0f)}, settingsFor(64, 65)).find("bounces is 65"), std::string::npos);
+    BakeSettings never = settingsFor(64);
+    never.submissionMs = 0.0f;
+    EXPECT_NE(refusal({vec3(0.0f)}, never).find("submission is 0"), std::string::npos);
     EXPECT_NE(refusal({vec3(0.0f), vec3(NAN)}, settingsFor(64)).find("probe 1"), std::string::npos);
 }
 

@@ -24,11 +24,12 @@ using namespace testing_support;
 class OctreeBuilder : public DeviceTest
 {
 protected:
+    PacedWork work{gpu(), 0.2};
     /// Builds on the device and on the host and compares every byte.
     void expectTwins(const FieldData& field, const OctreeSettings& settings)
     {
         const ProbeMaps maps{field.info, field.probes, field.distance};
-        const auto device = buildOctreeOnDevice(gpu(), maps, settings);
+        const auto device = buildOctreeOnDevice(gpu(), work, maps, settings);
         const auto host = buildOctree(maps, settings);
         ASSERT_TRUE(device) << device.error().message;
         ASSERT_TRUE(host) << host.error().message;
@@ -74,11 +75,11 @@ TEST_F(OctreeBuilder, GivesTheBytesOfItsTwinInSponza)
 TEST_F(OctreeBuilder, RefusesAndCancelsAsItsTwinDoes)
 {
     FieldData field = dividedBox(16);
-    const auto refused = buildOctreeOnDevice(gpu(), {field.info, {}, field.distance}, {});
+    const auto refused = buildOctreeOnDevice(gpu(), work, {field.info, {}, field.distance}, {});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, buildOctree({field.info, {}, field.distance}, {}).error().message);
     const auto cancelled =
-        buildOctreeOnDevice(gpu(), {field.info, field.probes, field.distance}, {}, [](std::string_view, double) { return false; });
+        buildOctreeOnDevice(gpu(), work, {field.info, field.probes, field.distance}, {}, [](std::string_view, double) { return false; });
     ASSERT_FALSE(cancelled);
     EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
 }
