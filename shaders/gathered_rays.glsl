@@ -4,4 +4,9 @@
 #include "shared/gathered_rays.h"
 
 /// The radiance that a ray brings from the texel where it ended.
-vec3 broughtBy(uint link) { return push.tints.value[tintOfLink(link)].xyz * unpackSharedExponent(push.sentBefore.word[texelOfLink(link)]); }
+vec3 broughtBy(uint link)
+{
+    vec4 tint = push.tints.value[tintOfLink(link)];
+    uint kept = (push.bounce + kSentKept - 1u - uint(tint.w)) % kSentKept;
+    return tint.xyz * unpackSharedExponent(push.sentKept.word[kept * push.texelCount + texelOfLink(link)]);
+}

@@ -21,7 +21,9 @@ void main()
         uint link = push.links.word[i * texelsOfProbe() + ofProbe];
         if (countEnd(ends, link)) sum += broughtBy(link);
     }
-    vec3 light = push.first.value[index].xyz + unpackSharedExponent(push.reflected.word[index]) + perRay(ends) * sum;
+    vec3 reflected = vec3(0.0);
+    for (uint i = 0u; i < min(push.bounce, kReflectionsCounted); ++i) reflected += unpackSharedExponent(push.reflected.word[i * push.texelCount + index]);
+    vec3 light = push.first.value[index].xyz + reflected + perRay(ends) * sum;
     push.light.value[index].xyz = light;
     SurfaceTexel own = push.texels.value[index];
     push.sent.word[index] = packSharedExponent(unpackRootOfColor(own.albedo) * light + unpackSharedExponent(own.sent));

@@ -397,7 +397,7 @@ def bounces(arguments):
     rows["all"] = {"label": "least and most", "scenes": str(len(rows))} | {key: least_and_most([row[key] for row in rows.values()]) for key in keys}
     write("bounces.json", "The mean of a view's indirect light over the path tracer's, both with as many bounces", ["bench/pages/bounces_table.sh"],
           ["diffuse_N, glossy_N, picture_N: of N bounces; pixels in which both see the same surface",
-           "a gathering ray that meets a coat, or a place no probe sees, goes on within its bounce: some light comes a bounce early"], rows)
+           "what a gathering ray brings that was reflected on its way is of as many bounces earlier, up to three"], rows)
 
 
 def effects(arguments):

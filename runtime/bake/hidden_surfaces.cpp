@@ -145,7 +145,7 @@ std::vector<std::pair<size_t, size_t>> sortByKey(std::vector<Place>& places, con
 /// Mean light at some places of one key, by how open they are, since what lies between a floor and the ground that goes on below it nobody
 /// sees; 0 where what sees them no probe sees either, unless they are enclosed: the far side of an outer wall.
 /// @param side  of its voxel, field units
-uint32_t lightOf(std::span<const Place> places, float side, Text& text, const TriangleGather& triangles, std::span<const uint32_t> sent)
+uint32_t lightOf(std::span<const Place> places, float side, Text& text, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
     vec3 sum(0.0f);
     float weights = 0.0f;
@@ -206,7 +206,7 @@ std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const ui
 /// Of one key's places at most kPlacesOfKey: of some all over the voxel those that are open, or whose rays meet what a probe sees, since
 /// nobody looks at what is sealed up behind them, in a moulding or between two layers of a wall; where there is none, any.
 /// @param side  of the voxel, field units
-std::vector<Place> chosenOf(std::span<const Place> places, float side, const TriangleGather& triangles, std::span<const uint32_t> sent)
+std::vector<Place> chosenOf(std::span<const Place> places, float side, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
     std::vector<Place> chosen;
     const size_t tried = std::min<size_t>(places.size(), kTried);
@@ -223,7 +223,7 @@ std::vector<Place> chosenOf(std::span<const Place> places, float side, const Tri
     return chosen;
 }
 
-void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent)
+void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
     const float side = lit.info.voxel * float(1u << of.shift);
     std::vector<std::vector<Place>> chosen(of.keys.size());
@@ -242,7 +242,7 @@ void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& 
 }
 
 /// The places that light is gathered at, and how large the voxels of their keys are.
-HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent)
+HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
     const Scene& scene = triangles.scene();
     double area = 0.0;
@@ -265,7 +265,7 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, std::sp
 
 /// Light of each key; 0: not known.
 std::vector<uint32_t> lightOfKeys(const FieldData& lit, const HiddenPlaces& of, const TriangleGather& triangles,
-                                  std::span<const uint32_t> sent)
+                                  const TriangleGather::Sent& sent)
 {
     const float wide = lit.info.voxel * float(1u << of.shift);
     std::vector<uint32_t> found(of.keys.size());
@@ -296,7 +296,7 @@ void dropNeedless(const FieldData& lit, HiddenPlaces& of, std::vector<uint32_t>&
 
 } // namespace
 
-void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent,
+void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent,
                          std::optional<HiddenPlaces>* places)
 {
     std::optional<HiddenPlaces> own;

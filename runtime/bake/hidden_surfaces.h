@@ -30,10 +30,10 @@ struct HiddenPlaces
 /// field's info.hidden and surfaceLight hold them. Cost: a look-up for each of up to some millions of points, and for each voxel and
 /// facing 64 rays for the light, and 64 to 256 for where to gather it.
 /// @param lit   with surface light, without refined texels
-/// @param sent  radiance that each texel sends, RGB9E5
+/// @param sent  by each texel
 /// @param places  where light was gathered before, of the same surfaces in other light, which then is where it is; null, or empty: found,
 ///                and put there
-void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent,
+void lightHiddenSurfaces(FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent,
                          std::optional<HiddenPlaces>* places = nullptr);
 
 /// Where the light of a hidden surface comes from.

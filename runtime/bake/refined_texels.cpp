@@ -175,7 +175,7 @@ struct FineFilter
 
 } // namespace
 
-void refineTexels(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent, float share,
+void refineTexels(FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent, float share,
                   std::optional<RefinedPlaces>* places)
 {
     const size_t all = size_t(6) * lit.info.surfaceSize * lit.info.surfaceSize * lit.info.probeCount;

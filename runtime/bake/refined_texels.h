@@ -22,10 +22,10 @@ struct RefinedPlaces
 /// whose light is off what their neighbours on the same surface would have it, of the two probes that light a place; into finer ones,
 /// gathered by exact rays. Afterwards the field's info.refinedTexels and surfaceLight hold them.
 /// @param lit    with surface light, none of it refined
-/// @param sent   radiance that each texel sends, RGB9E5
+/// @param sent   by each texel
 /// @param share  of all texels, at most
 /// @param places  where texels were refined before, which then are those; null, or empty: found, and put there
-void refineTexels(FieldData& lit, const TriangleGather& triangles, std::span<const uint32_t> sent, float share,
+void refineTexels(FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent, float share,
                   std::optional<RefinedPlaces>* places = nullptr);
 
 } // namespace sconce

@@ -35,7 +35,8 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     if (!known) return known.error();
     texelBuffer = std::move(*known);
     std::vector<vec4> colours(gpu::kTints, vec4(1.0f));
-    if (desc.triangles) std::ranges::transform(desc.triangles->tints(), colours.begin(), [](vec3 tint) { return vec4(tint, 0.0f); });
+    colours[0].w = 0.0f;
+    if (desc.triangles) std::ranges::copy(desc.triangles->tints(), colours.begin());
     auto metals = gpu->makeBufferWith(std::span<const vec4>(colours), 0, "tints of metals");
     if (!metals) return metals.error();
     tints = std::move(*metals);
@@ -45,14 +46,13 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
         uint64_t bytes;
         const char* what;
     };
-    for (const Need& need :
-         {Need{first, texels() * 16, "first light at surfaces"}, Need{light, texels() * 16, "light at surfaces"},
-          Need{sent, texels() * 4, "light that surfaces send"}, Need{sentBefore, texels() * 4, "light that surfaces sent"},
-          Need{reflected, texels() * 4, "light by specular reflection at surfaces"},
-          Need{filtered, words() * 4, "filtered light at surfaces"},
-          Need{tilts, directions() ? texels() * 16 : 0, "tilts of light at surfaces"},
-          Need{tilted, directions() ? texels() * 4 : 0, "filtered tilts of light at surfaces"},
-          Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
+    for (const Need& need : {Need{first, texels() * 16, "first light at surfaces"}, Need{light, texels() * 16, "light at surfaces"},
+                             Need{sent, gpu::kSentKept * texels() * 4, "light that surfaces send"},
+                             Need{reflected, gpu::kReflectionsCounted * texels() * 4, "light by specular reflection at surfaces"},
+                             Need{filtered, words() * 4, "filtered light at surfaces"},
+                             Need{tilts, directions() ? texels() * 16 : 0, "tilts of light at surfaces"},
+                             Need{tilted, directions() ? texels() * 4 : 0, "filtered tilts of light at surfaces"},
+                             Need{linkBuffer, texelsOfProbe() * std::max(desc.rays, 1u) * 4, "links of a probe's surfaces"}})
     {
         if (need.bytes == 0) continue;
         auto buffer = gpu->makeBuffer(need.bytes, 0, MemoryUse::device, need.what);
@@ -84,12 +84,12 @@ Status SurfaceBaker::make(std::span<const gpu::SurfaceTexel> asked)
     auto cleared = gpu->submit(
         [&](VkCommandBuffer cmd)
         {
-            for (const Buffer* buffer : {&first, &light, &sentBefore, &reflected})
+            for (const Buffer* buffer : {&first, &light, &sent, &reflected})
                 gpu->vk.CmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
             if (directions()) gpu->vk.CmdFillBuffer(cmd, tilts.handle(), 0, VK_WHOLE_SIZE, 0);
         });
     if (!cleared) return cleared;
-    return gpu->upload(sent, 0, std::as_bytes(std::span(direct)));
+    return gpu->upload(sent, keptAt(bounceMade), std::as_bytes(std::span(direct)));
 }
 
 gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
@@ -103,8 +103,10 @@ gpu::SurfacePush SurfaceBaker::pushFor(uint32_t probe, uint32_t rays) const
     push.tilted = directions() ? tilted.address() : 0;
     push.reflected = reflected.address();
     push.tints = tints.address();
-    push.sentBefore = sentBefore.address();
-    push.sent = sent.address();
+    push.sentKept = sent.address();
+    push.sent = sent.address() + keptAt(bounceMade);
+    push.bounce = uint32_t(std::max(bounceMade, 0));
+    push.texelCount = uint32_t(texels());
     push.probe = probe;
     push.rays = rays;
     push.shadowRays = desc.shadowRays;
@@ -155,7 +157,7 @@ Status SurfaceBaker::gatherTriangles(uint32_t probe)
     const size_t count = texelsOfProbe();
     std::vector<vec4> straight(count), arriving(count), moments(directions() ? count : 0);
     std::vector<gpu::SurfaceTexel> sending(count);
-    std::vector<uint32_t> shine(count), direct(desc.live ? count : 0);
+    std::vector<uint32_t> shine(gpu::kReflectionsCounted * count), direct(desc.live ? count : 0);
     const std::span<uint32_t> ends = std::span(links).subspan(probe * count * desc.rays, count * desc.rays);
     if (!desc.parts.take(BakeStage::gather, probe,
                          {asWritableBytes(ends), asWritableBytes(straight), asWritableBytes(arriving), asWritableBytes(shine),
@@ -177,7 +179,11 @@ Status SurfaceBaker::gatherTriangles(uint32_t probe)
     { return values.empty() ? success() : gpu->upload(buffer, probe * count * sizeof(values[0]), std::as_bytes(std::span(values))); };
     if (auto status = write(first, straight); !status) return status;
     if (auto status = write(light, arriving); !status) return status;
-    if (auto status = write(reflected, shine); !status) return status;
+    for (size_t i = 0; i < gpu::kReflectionsCounted; ++i)
+    {
+        const auto part = std::as_bytes(std::span(shine).subspan(i * count, count));
+        if (auto status = gpu->upload(reflected, 4 * (i * texels() + probe * count), part); !status) return status;
+    }
     if (auto status = write(tilts, moments); !status) return status;
     return write(texelBuffer, sending);
 }
@@ -233,23 +239,24 @@ Status SurfaceBaker::upload(uint32_t probe)
 
 Status SurfaceBaker::bounce()
 {
-    std::swap(sent, sentBefore);
+    ++bounceMade;
+    const uint32_t rays = bounceMade > 0 ? desc.rays : 0;
     for (uint32_t probe = 0; probe < field.info().probeCount; ++probe)
     {
-        if (lit)
+        if (rays > 0)
             if (auto status = upload(probe); !status) return status;
-        if (auto status = dispatch(bouncePass, false, pushFor(probe, lit ? desc.rays : 0), "surface bounce", &light); !status)
-            return status;
+        if (auto status = dispatch(bouncePass, false, pushFor(probe, rays), "surface bounce", &light); !status) return status;
     }
-    lit = true;
-    return success();
+    if (bounceMade > 0) return success();
+    // Before the first bounce nothing was scattered that reflections could ask for.
+    return gpu->submit([&](VkCommandBuffer cmd) { gpu->vk.CmdFillBuffer(cmd, sent.handle(), keptAt(-1), texels() * 4, 0); });
 }
 
 Result<double> SurfaceBaker::meanSent()
 {
     const uint32_t side = field.info().surfaceSize;
     std::vector<uint32_t> words(texels());
-    if (auto status = gpu->download(sent, 0, std::as_writable_bytes(std::span(words))); !status) return status.error();
+    if (auto status = gpu->download(sent, keptAt(bounceMade), std::as_writable_bytes(std::span(words))); !status) return status.error();
     double sum = 0.0, all = 0.0;
     for (size_t i = 0; i < words.size(); ++i)
     {
@@ -274,10 +281,22 @@ Status SurfaceBaker::gatherCells()
 /// The same from what rays to triangles found.
 Status SurfaceBaker::cellsFromTriangles(std::span<uint32_t> found)
 {
-    std::vector<uint32_t> before(texels());
-    if (auto status = gpu->download(sentBefore, 0, std::as_writable_bytes(std::span(before))); !status) return status;
-    desc.triangles->lightCells(cells, before, found);
+    const auto before = sentBefore();
+    if (!before) return before.error();
+    desc.triangles->lightCells(cells, *before, found);
     return success();
+}
+
+Result<TriangleGather::Sent> SurfaceBaker::sentBefore()
+{
+    TriangleGather::Sent words;
+    for (size_t reflections = 0; reflections < words.size(); ++reflections)
+    {
+        words[reflections].resize(texels());
+        const VkDeviceSize at = keptAt(bounceMade - 1 - int(reflections));
+        if (auto status = gpu->download(sent, at, std::as_writable_bytes(std::span(words[reflections]))); !status) return status.error();
+    }
+    return words;
 }
 
 /// Of the light after the last bounce.
@@ -319,10 +338,10 @@ Status SurfaceBaker::read(std::span<uint32_t> found)
 Status SurfaceBaker::refine(FieldData& data, float share, LightLayout* layout)
 {
     if (!desc.triangles) return success();
-    std::vector<uint32_t> before(texels());
-    if (auto status = gpu->download(sentBefore, 0, std::as_writable_bytes(std::span(before))); !status) return status;
-    lightHiddenSurfaces(data, *desc.triangles, before, layout ? &layout->hidden : nullptr);
-    refineTexels(data, *desc.triangles, before, share, layout ? &layout->refined : nullptr);
+    const auto before = sentBefore();
+    if (!before) return before.error();
+    lightHiddenSurfaces(data, *desc.triangles, *before, layout ? &layout->hidden : nullptr);
+    refineTexels(data, *desc.triangles, *before, share, layout ? &layout->refined : nullptr);
     return success();
 }
 
@@ -354,7 +373,7 @@ LiveTransport SurfaceBaker::transport(const FieldData& data, uint32_t count, con
     live.placeLinks.resize(count * live.places.size());
     for (size_t place = 0; place < linksOf.size(); ++place)
         for (size_t i = 0; i < count; ++i) live.placeLinks[i * live.places.size() + place] = linksOf[place][i];
-    live.tints = desc.triangles->tints();
+    live.tints.assign(desc.triangles->tints().begin(), desc.triangles->tints().end());
     live.tints.resize(gpu::kTints, vec3(1.0f));
     return live;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -89,6 +90,10 @@ private:
     Status gatherTriangles(uint32_t probe);
     Status gatherThroughField(uint32_t probe);
     Status upload(uint32_t probe);
+    /// What texels sent before the last bounce, and before those that reflections ask for.
+    Result<TriangleGather::Sent> sentBefore();
+    /// Of `sent`: where what texels send after a bounce is; -1: before the first.
+    VkDeviceSize keptAt(int bounce) const { return 4 * texels() * (uint32_t(bounce + int(gpu::kSentKept)) % gpu::kSentKept); }
     bool directions() const { return field.info().surfaceDirections != 0; }
     size_t words() const { return surfaceTexelWords(field.info()) + cellWords(field.info()); }
     size_t texels() const { return texelsOfProbe() * field.info().probeCount; }
@@ -99,13 +104,13 @@ private:
     LightField field;
     Desc desc;
     Pipeline gatherPass, bouncePass, tiltPass, filterPass, cellPass;
-    Buffer texelBuffer, first, light, linkBuffer, sent, sentBefore, filtered; // of all probes but the links, which are of one
+    Buffer texelBuffer, first, light, linkBuffer, sent, filtered; // of all probes but the links, which are of one
     Buffer tints, reflected;
     Buffer tilts, tilted;        // the same, where the field has directions
     std::vector<uint32_t> links; // [probe][ray][texel]
     TriangleGather::Cells cells; // by rays to triangles
     std::vector<gpu::LiveTexel> liveTexels;
-    bool lit = false; // the light without a bounce is made
+    int bounceMade = -1; // the last; 0: the light without one
 };
 
 } // namespace sconce

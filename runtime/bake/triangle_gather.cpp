@@ -49,16 +49,16 @@ struct Gatherer : LightFieldTwin<float>
     std::span<const EmittingTriangle> emitters;
     TriangleGather::Desc desc;
     float gap;
-    std::span<const glm::vec3> palette;
+    std::span<const glm::vec4> palette;
     std::span<const float> straight; // TriangleGather::straight
     const EmitterPatches& patches;
-    std::span<uint32_t> links;  // of the probe
-    size_t slot = 0;            // of the texel in it
-    std::vector<float> running; // sums of the emitters' weights, up to each and with it
-    vec3 brought{0.0f};         // light of emitters and sky that the rays have brought by reflection, summed
+    std::span<uint32_t> links;                            // of the probe
+    size_t slot = 0;                                      // of the texel in it
+    std::vector<float> running;                           // sums of the emitters' weights, up to each and with it
+    std::array<vec3, gpu::kReflectionsCounted> brought{}; // light of emitters and sky that the rays have brought by reflections, summed
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
-             std::span<const glm::vec3> tints, std::span<const float> ofMaterials, const EmitterPatches& ofEmitters,
+             std::span<const glm::vec4> tints, std::span<const float> ofMaterials, const EmitterPatches& ofEmitters,
              std::span<uint32_t> into)
         : LightFieldTwin<float>(data, {}), triangles(rays), lightsHeader(list.header), lights(list.lights), emitters(list.emitters),
           desc(wanted), gap(offset), palette(tints), straight(ofMaterials), patches(ofEmitters), links(into)
@@ -103,7 +103,7 @@ struct Gatherer : LightFieldTwin<float>
             if (!hit && turn == 0) return kLinkSky;
             if (!hit)
             {
-                brought += tint * field.sky; // a link to the sky has no room for the colour
+                broughtBy(turn) += tint * field.sky; // a link to the sky has no room for the colour
                 return kLinkDark;
             }
             if (const EmittingTriangle* emitter = emitterMet(hit->triangle, direction))
@@ -112,15 +112,16 @@ struct Gatherer : LightFieldTwin<float>
                 if (turn == 0)
                     emitted += isNearPatch(d2, emitter->patch) ? emitter->emission : vec3(0.0f);
                 else
-                    brought += tint * emitter->emission *
-                               (density / (density + densityOfPatch(d2, facingOf(*emitter, direction), emitter->patch)));
+                    broughtBy(turn) += tint * emitter->emission *
+                                       (density / (density + densityOfPatch(d2, facingOf(*emitter, direction), emitter->patch)));
             }
             const Place place = placeOf(*hit, direction);
             const BrdfLobes lobes = lobesAt(place.surface, -dot(place.shading, direction));
             const vec3 color = specularColor(lobes);
             const float all = luminance(color), onward = shareOnward(place.surface, all);
-            if (onward > 0.0f) brought += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, ofLights);
-            brought += tint * straightBySpecular(place, direction, ofLights);
+            if (onward > 0.0f)
+                broughtBy(turn + 1) += tint * (onward / std::max(all, 1e-6f)) * emittersBySpecular(lobes, place, direction, ofLights);
+            broughtBy(turn + 1) += tint * straightBySpecular(place, direction, ofLights);
             from = place.position + 2.0f * gap * place.normal;
             if (turn < kMostTurns && random.uniform() < onward)
             {
@@ -129,14 +130,14 @@ struct Gatherer : LightFieldTwin<float>
                 continue;
             }
             const uint found = texelAt((place.position - field.origin) / field.scale, place.normal, random.uniform());
-            if (found != kLinkSurface) return found | nearestTint(tint) << kLinkTexelBits;
+            if (found != kLinkSurface) return found | nearestTint(tint, turn) << kLinkTexelBits;
             // No probe sees the place: there the ray is scattered itself.
             const vec3 scattered = scatteredBy(place.surface);
             const float goesOn = luminance(scattered);
-            brought += tint * scattered *
-                       (emittersByDiffuse(place, ofLights) +
-                        (shareToAllSides(place.surface) * deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) /
-                            kBrdfPi);
+            broughtBy(turn + 1) += tint * scattered *
+                                   (emittersByDiffuse(place, ofLights) + (shareToAllSides(place.surface) * deltaLightAt(place) +
+                                                                          lampLightAt(place.position, place.normal, place.normal)) /
+                                                                             kBrdfPi);
             if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
             tint *= scattered / goesOn;
             const vec3 up = sampleCosine(random.uniform2());
@@ -144,7 +145,7 @@ struct Gatherer : LightFieldTwin<float>
             density = std::max(up.z, 1e-6f) / kBrdfPi;
         }
     }
-    static constexpr int kMostTurns = 16; // on a ray's way to a texel
+    static constexpr int kMostTurns = 64; // on a ray's way to a texel: of spaces that no probe sees all light comes by them
     static constexpr uint64_t kOfLights = uint64_t(1) << 32;
 
     struct Place
@@ -345,12 +346,31 @@ struct Gatherer : LightFieldTwin<float>
         return uint(255.0f * grazing / kMostGrazing + 0.5f) << 24;
     }
 
-    uint nearestTint(vec3 tint) const
+    /// @param reflections  of the ray; more than the colours tell are as many as they do
+    uint nearestTint(vec3 tint, int reflections) const
     {
+        const float told = std::min(float(reflections), palette.back().w);
         uint nearest = 0;
-        for (uint i = 1; i < palette.size(); ++i)
-            if (distance(palette[i], tint) < distance(palette[nearest], tint)) nearest = i;
+        float off = kFar;
+        for (uint i = 0; i < palette.size(); ++i)
+        {
+            const float own = distance(vec3(palette[i]), tint);
+            if (palette[i].w == told && own < off) nearest = i, off = own;
+        }
         return nearest;
+    }
+
+    /// Where light goes that comes by so many reflections, at least one.
+    vec3& broughtBy(int reflections)
+    {
+        return brought[std::min(size_t(reflections), brought.size()) - 1];
+    }
+    /// The mean of a place's rays.
+    vec3 allBrought(const Ends& ends) const
+    {
+        vec3 sum(0.0f);
+        for (const vec3& light : brought) sum += light;
+        return sum / std::max(ends.all, 1.0f);
     }
 
     /// A texel with what it sends of the light of lamps.
@@ -454,12 +474,16 @@ struct Gatherer : LightFieldTwin<float>
     }
 
     /// Mean radiance that a place's rays bring from the texels where they ended.
-    vec3 broughtTo(std::span<const uint32_t> ends, std::span<const uint32_t> sent)
+    vec3 broughtTo(std::span<const uint32_t> ends, const TriangleGather::Sent& sent)
     {
         Ends count{};
         vec3 sum(0.0f);
         for (const uint32_t link : ends)
-            if (countEnd(count, link)) sum += palette[tintOfLink(link)] * unpackSharedExponent(sent[texelOfLink(link)]);
+        {
+            if (!countEnd(count, link)) continue;
+            const vec4 tint = palette[tintOfLink(link)];
+            sum += vec3(tint) * unpackSharedExponent(sent[size_t(tint.w)][texelOfLink(link)]);
+        }
         return perRay(count) * sum;
     }
 
@@ -516,8 +540,9 @@ std::vector<float> straightShares(const Scene& scene)
     return shares;
 }
 
-/// Colours that the scene's metals give what they reflect, the farthest from those before first, where they differ visibly.
-std::vector<vec3> metalTints(const Scene& scene)
+/// TriangleGather::tints(): white of no reflection, then white and the colours that the scene's metals give what they reflect, the farthest
+/// from those before first, where they differ visibly; of one reflection, and of more where there is room for all of them again.
+std::vector<vec4> reflectedTints(const Scene& scene)
 {
     constexpr int kSteps = 8;              // places of a texture, along each side
     constexpr float kVisiblyOther = 0.02f; // distance of two tints
@@ -532,7 +557,7 @@ std::vector<vec3> metalTints(const Scene& scene)
         }
         if (const float light = glm::dot(sum, kLuminance); light > 0.0f) all.push_back(sum / light);
     }
-    while (chosen.size() < gpu::kTints)
+    while (chosen.size() + 1 < gpu::kTints)
     {
         const auto off = [&](vec3 tint)
         { return std::ranges::min(chosen | std::views::transform([&](vec3 other) { return glm::distance(tint, other); })); };
@@ -540,7 +565,10 @@ std::vector<vec3> metalTints(const Scene& scene)
         if (farthest == all.end() || !(off(*farthest) > kVisiblyOther)) break;
         chosen.push_back(*farthest);
     }
-    return chosen;
+    std::vector<vec4> tints{vec4(1.0f, 1.0f, 1.0f, 0.0f)};
+    for (uint32_t turn = 1; turn <= gpu::kReflectionsCounted && tints.size() + chosen.size() <= gpu::kTints; ++turn)
+        for (const vec3& tint : chosen) tints.emplace_back(tint, float(turn));
+    return tints;
 }
 
 } // namespace
@@ -548,7 +576,7 @@ std::vector<vec3> metalTints(const Scene& scene)
 TriangleGather::TriangleGather(const ExactRays& rays, const FieldData& data, std::span<const gpu::SurfaceTexel> known,
                                const LightList& list, const Desc& wanted)
     : triangles(&rays), field(&data), texels(known), lights(&list), desc(wanted), gap(rayOffset(rays.scene())),
-      palette(metalTints(rays.scene())), straight(straightShares(rays.scene())),
+      palette(reflectedTints(rays.scene())), straight(straightShares(rays.scene())),
       patches(std::span(list.lights).subspan(list.header.deltaCount, list.header.emitterCount))
 {
     for (size_t i = 0; i < grazings.size(); ++i) grazings[i] = twin::Gatherer::grazingOfRoughness(float(i) / float(grazings.size() - 1));
@@ -574,11 +602,11 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                     {
                         text.slot = row * side + size_t(x);
                         target.first[text.slot] = target.light[text.slot] = vec4(0.0f);
-                        target.reflected[text.slot] = 0;
+                        for (size_t i = text.slot; i < target.reflected.size(); i += own.size()) target.reflected[i] = 0;
                         if (!target.direct.empty()) target.direct[text.slot] = 0;
                         if (!target.tilts.empty()) target.tilts[text.slot] = vec4(0.0f);
                         if (!(own[text.slot].normal & gpu::kSurfaceKnown)) continue;
-                        text.brought = vec3(0.0f);
+                        text.brought = {};
                         const auto surface = text.surfacePointAt(probe, face, x, y);
                         vec3 plane = surface.normal, point = text.probeHeader(probe).centre + surface.at;
                         const auto exact = text.findSurface(probe, point, plane);
@@ -600,14 +628,16 @@ void TriangleGather::gather(uint32_t probe, const Target& target) const
                             target.direct[text.slot] = exact ? text.directOf(own[text.slot], *exact)
                                                              : text.packSharedExponent(text.unpackRootOfColor(own[text.slot].albedo));
                         target.light[text.slot].w = got.variance;
-                        target.reflected[text.slot] = text.packSharedExponent(text.brought / std::max(got.ends.all, 1.0f));
+                        for (size_t i = 0; i < text.brought.size(); ++i)
+                            target.reflected[i * own.size() + text.slot] =
+                                text.packSharedExponent(text.brought[i] / std::max(got.ends.all, 1.0f));
                         target.first[text.slot] = vec4(got.light, text.knowsTooLittle(got.ends, got.asked) ? gpu::kNotKnown : got.reach);
                         if (!target.tilts.empty()) target.tilts[text.slot] = vec4(text.alongPlane(got.tilt, normal), 0.0f, 0.0f);
                     }
                 });
 }
 
-TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec3 texel, std::span<const uint32_t> sent) const
+TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec3 texel, const Sent& sent) const
 {
     constexpr uint32_t kSide = 1u << gpu::kFineLog;
     std::vector<uint32_t> links(desc.rays);
@@ -623,20 +653,18 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
         if (!exact) continue;
         const vec3 point = (exact->position - field->info.origin) / field->info.scale + 2.0f * gap / field->info.scale * exact->normal;
         const vec3 normal = field->info.surfaceDirections != 0 ? surface.normal : exact->shading;
-        text.brought = vec3(0.0f);
+        text.brought = {};
         const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at),
                                        grazingOf(exact->surface.metallic, exact->surface.roughness));
         if (text.knowsTooLittle(got.ends, got.asked)) continue;
-        found[i] = {got.light,    text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
-                    got.variance, got.room,
-                    got.reach,    true,
-                    true,         false};
+        found[i] = {got.light, text.broughtTo(links, sent) + text.allBrought(got.ends), got.variance, got.room, got.reach, true, true,
+                    false};
     }
     return found;
 }
 
 TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample,
-                                               std::span<const uint32_t> sent) const
+                                               const Sent& sent) const
 {
     std::vector<uint32_t> links(rays);
     Desc fewer = desc;
@@ -644,7 +672,7 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
     twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, patches, links);
     const auto got = text.gatherAt(point, normal, normal, sample, grazing);
     return {got.light,
-            text.broughtTo(links, sent) + text.brought / std::max(got.ends.all, 1.0f),
+            text.broughtTo(links, sent) + text.allBrought(got.ends),
             got.variance,
             got.room,
             got.reach,
@@ -683,14 +711,13 @@ TriangleGather::Cells TriangleGather::gatherCells() const
                         if (found.places[cell] == 0) return;
                         const vec3 axis = text.faceDirection(facing, vec3(0.0f, 0.0f, 1.0f));
                         const auto got = text.gatherAt(text.cellPlace(at, found.places[cell]), axis, axis, glm::uvec2(cell, facing), 0.0f);
-                        if (!text.knowsTooLittle(got.ends, float(desc.rays)))
-                            found.straight[index] = got.light + text.brought / std::max(got.ends.all, 1.0f);
+                        if (!text.knowsTooLittle(got.ends, float(desc.rays))) found.straight[index] = got.light + text.allBrought(got.ends);
                     }
                 });
     return found;
 }
 
-void TriangleGather::lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const
+void TriangleGather::lightCells(const Cells& cells, const Sent& sent, std::span<uint32_t> words) const
 {
     assert(words.size() == gpu::kCellWords * cells.places.size());
     parallelFor(cells.places.size(),

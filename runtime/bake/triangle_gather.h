@@ -36,7 +36,7 @@ public:
         std::span<uint32_t> links; // [ray][texel]: gpu::kLinkSky and its like, or another texel
         std::span<vec4> first;     // SurfacePush::first, light, tilts
         std::span<vec4> light;
-        std::span<uint32_t> reflected; // radiance of emitters that comes by specular reflection, RGB9E5
+        std::span<uint32_t> reflected; // SurfacePush::reflected, of the probe's texels
         std::span<vec4> tilts;         // empty: not asked for
         // Becomes what a ray that ends there brings: it reflects by its diffuse lobe alone, as rays that meet the others go on; but the
         // light of what has no extent it reflects by all its lobes as if they were diffuse.
@@ -44,8 +44,11 @@ public:
         std::span<uint32_t> direct; // RGB9E5: what it sends of light of no extent over what arrives; empty: not asked for
     };
     void gather(uint32_t probe, const Target& target) const;
-    /// Colours of the scene's metals, of luminance 1, the first white: at most gpu::kTints.
-    const std::vector<vec3>& tints() const { return palette; }
+    /// Radiance that each texel sends, RGB9E5: to rays that end there at once, and, of bounces earlier, to those that were reflected so
+    /// often.
+    using Sent = std::array<std::vector<uint32_t>, gpu::kReflectionsCounted + 1>;
+    /// Colours that links name, of luminance 1, and of how many reflections: at most gpu::kTints, the first white and of none.
+    const std::vector<vec4>& tints() const { return palette; }
 
     /// Of the cells' facings, [cell][6].
     struct Cells
@@ -55,9 +58,8 @@ public:
         std::vector<vec3> straight;   // radiance from emitters and sky; negative: too little is known
     };
     Cells gatherCells() const;
-    /// @param sent   radiance that each texel sends, RGB9E5
     /// @param words  of the cells as FieldData::surfaceLight has them
-    void lightCells(const Cells& cells, std::span<const uint32_t> sent, std::span<uint32_t> words) const;
+    void lightCells(const Cells& cells, const Sent& sent, std::span<uint32_t> words) const;
 
     /// Light at one place, as `gather` finds it at a texel's.
     struct Point
@@ -71,16 +73,15 @@ public:
     };
     /// At what the 2^kFineLog squared finer texels of a texel see.
     /// @param texel  x, y, face
-    /// @param sent   radiance that each texel sends, RGB9E5
     using FinePoints = std::array<Point, size_t(1) << (2 * gpu::kFineLog)>;
-    FinePoints gatherFiner(uint32_t probe, glm::uvec3 texel, std::span<const uint32_t> sent) const;
+    FinePoints gatherFiner(uint32_t probe, glm::uvec3 texel, const Sent& sent) const;
 
     /// At a place on a surface that no texel need show.
     /// @param point   field space, off it by gap()
     /// @param normal   unit, on the side that is lit
     /// @param grazing  of its surface, see grazingOf()
     /// @param rays    at most Desc's
-    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, std::span<const uint32_t> sent) const;
+    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent) const;
     /// Where the rays of such a place end.
     std::vector<uint32_t> linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const;
     /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in
@@ -96,7 +97,7 @@ private:
     const LightList* lights;
     Desc desc;
     float gap; // metres that rays start off their surface
-    std::vector<vec3> palette;
+    std::vector<vec4> palette;
     std::vector<float> straight; // by material, see straightShares()
     EmitterPatches patches;
     std::array<float, 256> grazings{}; // by roughness

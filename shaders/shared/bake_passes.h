@@ -55,9 +55,12 @@ const uint kBakeCoatsId = 1u;     // bake_surface.comp: whether rays to triangle
 const uint kBakeAreaLightId = 0u; // bake_surface.comp: whether direct light has emitters and sky in it, by their shadow maps
 
 // Where a gathering ray of a texel ended: the index of another texel, whose light it brings, in the lower bits, above them which of kTints colours
-// of metal it met on its way (0: none); or one of these.
+// it was reflected in on its way, and how often; or one of these. Light that comes by reflections was scattered so many times more than what ends at
+// once: it is of so many bounces earlier.
 const uint kLinkTexelBits = 28u;
 const uint kTints = 15u;
+const uint kReflectionsCounted = 3u;              // more count as so many
+const uint kSentKept = kReflectionsCounted + 2u; // bounces whose light is kept: the last, that before it, and those that reflections ask for
 const uint kLinkSky = 0xffffffffu;
 const uint kLinkNone = 0xfffffffeu; // nothing is known of it
 const uint kLinkSurface = 0xfffffffdu; // a surface of whose light nothing is known
@@ -71,18 +74,20 @@ struct SurfacePush
     SCONCE_ADDRESS(SurfaceFloats) first;  // of all probes: mean radiance straight from emitters and sky; harmonic mean of the rays' lengths, field units
     SCONCE_ADDRESS(SurfaceFloats) light;  // of all probes: mean radiance that arrives; variance of the luminance of `first`, by chance
     SCONCE_ADDRESS(BakeWords) links;      // of this probe, [ray][texel]
-    SCONCE_ADDRESS(BakeWords) sentBefore; // of all probes: radiance that each texel sends, RGB9E5
-    SCONCE_ADDRESS(BakeWords) sent;       // the same after the bounce; of the filter and of cells, the surface light
+    SCONCE_ADDRESS(BakeWords) sentKept;   // of all probes: radiance that each texel sends after bounce b, RGB9E5, [b % kSentKept][texel]
+    SCONCE_ADDRESS(BakeWords) sent;       // the same after this bounce; of the filter and of cells, the surface light
     SCONCE_ADDRESS(SurfaceFloats) tilts;  // of all probes: moment along the plane of the luminance straight from emitters and sky, and of all; none: 0
     SCONCE_ADDRESS(BakeWords) tilted;     // of all probes: of the filter, packTilt() of a texel
-    SCONCE_ADDRESS(BakeWords) reflected;  // of all probes: light of emitters that comes by specular reflection, RGB9E5
-    SCONCE_ADDRESS(SurfaceFloats) tints;  // kTints colours, the first white
+    SCONCE_ADDRESS(BakeWords) reflected;  // of all probes: light of emitters that comes by specular reflection, RGB9E5, [reflections - 1][texel]
+    SCONCE_ADDRESS(SurfaceFloats) tints;  // kTints colours, and of how many reflections; the first white, of none
     uint probe;
     uint rays;       // a texel
     uint shadowRays; // a texel, to emitters
     float offset;    // field units that a ray starts off its surface
+    uint bounce;     // 0: the first, of which light is that comes at once
+    uint texelCount; // of all probes
 };
-SCONCE_CHECK_SIZE(SurfacePush, 96);
+SCONCE_CHECK_SIZE(SurfacePush, 104);
 const uint kMostShadowRays = 32u;
 const float kMostSlope = 5.0f; // tangent of a ray's angle to the normal that a tilt's moment counts
 const uint kCellGroup = 64u; // facings of cells a workgroup of cell_gather.comp

@@ -64,7 +64,7 @@ SCONCE_FN bool countEnd(SCONCE_INOUT(Ends) ends, uint link)
     return link != kLinkDark;
 }
 
-/// Of a link that is a texel: its index, and which colour of metal is before it.
+/// Of a link that is a texel: its index, and which colour the ray was reflected in.
 SCONCE_FN uint texelOfLink(uint link) { return link & ((1u << kLinkTexelBits) - 1u); }
 SCONCE_FN uint tintOfLink(uint link) { return link >> kLinkTexelBits; }
 
