@@ -205,6 +205,7 @@ protected:
         settings.surfaceRays = how == Bake::live ? 8 : 4;
         settings.surfaceRefined = 0.0f;
         settings.octree.voxels = 16;
+        settings.submissionMs = knobs::submissionMs.most; // in which all fits: the calls must not hang on how fast it is
         settings.rays = how == Bake::throughTheField ? nullptr : rays;
         settings.liveLinks = how == Bake::live ? 8 : 0;
         settings.journal = journal;

@@ -179,7 +179,6 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         {"light that surfaces send", "as surface texels; the light that they are made of is scanned"},
         {"filtered light at surfaces", "as light that surfaces send"},
         {"filtered tilts of light at surfaces", "words of 8 bits a number"},
-        {"light that surfaces sent", "as light that surfaces send"},
         {"light by specular reflection at surfaces", "as light that surfaces send"},
         {"tints of metals", "from the host: clamped colours over their luminance"},
         {"probe headers", "as distances"},
