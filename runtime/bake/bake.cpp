@@ -190,8 +190,10 @@ Status fitsTheHost(const FieldData& field, const BakeSettings& settings, bool em
     // The octree is built from a copy of all maps on the device, which for a software device is main memory again.
     const uint64_t texels = 6ull * info.surfaceSize * info.surfaceSize; // of surface light: links, what bounces need, the light itself
     const uint64_t tilts = info.surfaceDirections != 0 ? 6 : 0;         // words a texel
-    const uint64_t cells = texels > 0 && settings.rays ? 6 * kCellsOfProbe : 0; // facings; their links stay here
-    const uint64_t surface = texels * (settings.surfaceRays + 4 + (deviceIsHost ? 14 + tilts : 0)) + cells * settings.surfaceRays;
+    const uint64_t cells = texels > 0 && settings.rays ? 6 * kCellsOfProbe : 0;       // facings; their links stay here
+    const uint64_t onDevice = 11 + gpu::kSentKept + gpu::kReflectionsCounted + tilts; // words a texel
+    const uint64_t surface =
+        texels * (settings.surfaceRays + 4 + gpu::kReflectionsCounted + (deviceIsHost ? onDevice : 0)) + cells * settings.surfaceRays;
     // Beside it: the light of all groups, and live light's links, at texels and at places of cells and hidden surfaces.
     const uint64_t each = light + kIrradianceWordsPerProbe + gpu::kPrefilteredWords + texels;
     const uint64_t apart =
