@@ -26,7 +26,7 @@ layout(set = SCONCE_FIELD_SET, binding = kFieldIrradianceBinding) uniform utextu
 layout(set = SCONCE_FIELD_SET, binding = kFieldPrefilteredBinding) uniform utextureBuffer sconcePrefiltered;
 layout(set = SCONCE_FIELD_SET, binding = kFieldSurfaceBinding) uniform utextureBuffer sconceSurfaceLight;
 
-layout(set = SCONCE_FIELD_SET, binding = kFieldSlotsBinding) uniform utextureBuffer sconceSlots;
+layout(scalar, set = SCONCE_FIELD_SET, binding = kFieldSlotsBinding) readonly buffer SconceSlots { uint sconceSlots[]; };
 
 // Of a pass; LightField::constants() holds them.
 layout(constant_id = kFieldFlagsId) const uint kFieldFlags = 0u;
@@ -59,7 +59,7 @@ ProbeHeader probeHeader(uint probe)
 #endif
 // Of a field that streams not all maps are on the device. A compute pass that defines SCONCE_ASKS_FOR_MAPS before it includes this tells FieldStream which it
 // would read, and how often: one of eight invocations does.
-uint slotOf(uint probe) { return texelFetch(sconceSlots, int(probe)).x; }
+uint slotOf(uint probe) { return sconceSlots[probe]; }
 bool holdsMaps(uint probe) { return !streams() || slotOf(probe) != kNoProbe; }
 uint mapSlot(uint probe) // in the field even of maps that aren't there, which nobody should read
 {

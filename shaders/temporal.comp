@@ -12,8 +12,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
 layout(set = 1, binding = kBlendLightBinding, rgba16f) uniform image2D light;              // rgb; a: of the glossy term the distance of the hit, metres
-layout(set = 1, binding = kBlendBeforeBinding, rgba16f) readonly uniform image2D before;    // rgb, a: frames blended
-layout(set = 1, binding = kBlendPointsBeforeBinding, r32ui) readonly uniform uimage2D pointsBefore;
+layout(set = 1, binding = kBlendBeforeBinding) uniform texture2D before;    // rgb, a: frames blended
+layout(set = 1, binding = kBlendPointsBeforeBinding) uniform utexture2D pointsBefore;
 layout(set = 1, binding = kBlendAfterBinding, rgba16f) writeonly uniform image2D after;
 layout(set = 1, binding = kBlendPointsAfterBinding, r32ui) writeonly uniform uimage2D pointsAfter; // distance to the eye, metres, a half float; normal of 2 x 8 bits; 0 where the pixel had no such light
 
@@ -50,12 +50,12 @@ vec4 history(vec2 pixel, float distanceBefore, vec3 normal)
     {
         ivec2 tap = low + ivec2(i & 1, i >> 1);
         if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(frame.size)))) continue;
-        uint point = imageLoad(pointsBefore, tap).x;
+        uint point = texelFetch(pointsBefore, tap, 0).x;
         if (point == 0u) continue;
         bool sameDepth = abs(halfToReal(point) - distanceBefore) < 0.02 * distanceBefore;
         if (!sameDepth || dot(unpackNormal8(point >> 16), normal) < 0.9) continue;
         float weight = ((i & 1) != 0 ? f.x : 1.0 - f.x) * ((i >> 1) != 0 ? f.y : 1.0 - f.y);
-        sum += weight * imageLoad(before, tap);
+        sum += weight * texelFetch(before, tap, 0);
         weights += weight;
     }
     return weights > 0.05 ? sum / weights : vec4(0.0);

@@ -69,12 +69,18 @@ Status load(const BakeOptions& options, const Context& context, Asked& asked)
 Status settle(const BakeOptions& options, const Context& context, Asked& asked)
 {
     BakeSettings& settings = asked.settings = options.settings;
+    std::string gather = options.gather;
     const Result<std::optional<PointSettings>> quality = options.quality.load();
     if (!quality) return quality.error();
     if (*quality)
     {
         options.quality.take("--resolution", settings.resolution, (*quality)->resolution);
         options.quality.take("--bounces", settings.bounces, (*quality)->bounces);
+        options.quality.take("--surface-texels", settings.surfaceTexels, (*quality)->bakedSurfaceTexels());
+        options.quality.take("--surface-rays", settings.surfaceRays, (*quality)->surfaceRays);
+        options.quality.take("--surface-refined", settings.surfaceRefined, (*quality)->surfaceRefined);
+        options.quality.take("--compact", settings.compact, (*quality)->compact);
+        options.quality.take("--gather", gather, std::string(knobs::kGathers[(*quality)->fieldGather ? 1 : 0]));
         settings.octree.voxels = (*quality)->octreeVoxels;
     }
     // The field must say that it is a grid: its probes are then found by a formula, and the bake moves none of them.
@@ -90,7 +96,7 @@ Status settle(const BakeOptions& options, const Context& context, Asked& asked)
     if (settings.compact && settings.chart != gpu::kChartCube) // before another bake that lends its light
         return Error{ErrorCode::badArgument, "--compact puts cube faces in blocks; leave it out with --chart octahedral."};
     asked.lends = settings.chart == gpu::kChartOctahedral && settings.surfaceTexels > 0;
-    if (options.gather != knobs::kGathers[0] || settings.surfaceTexels == 0) return success();
+    if (gather != knobs::kGathers[0] || settings.surfaceTexels == 0) return success();
     auto built = TriangleRays::build(asked.scene);
     if (!built) return built.error();
     settings.rays = &asked.rays.emplace(std::move(*built));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bench/reference/image_io.h"
+#include "bench/sweep/probe_sets.h"
 #include "placement/place.h"
 #include "runtime/field/field_data.h"
 #include "scene/scene_gltf.h"
@@ -31,15 +32,15 @@ struct PlaceOptions
 };
 
 /// As many probes as the budget holds. Errors: badArgument with the bytes that one needs.
-Result<uint32_t> countFor(uint64_t memory, uint32_t resolution, bool compact)
+Result<uint32_t> countFor(uint64_t memory, const PointSettings& baked)
 {
     // The scene is read later: as if it had normal textures, which take a few bytes more.
     const uint64_t each =
-        bytesPerProbe(gpu::kChartCube, resolution, knobs::surfaceTexels.value, true, knobs::surfaceRefined.value, compact);
+        bytesPerProbe(gpu::kChartCube, baked.resolution, baked.bakedSurfaceTexels(), true, baked.surfaceRefined, baked.compact);
     if (memory < each)
         return Error{ErrorCode::badArgument,
                      fmt::format("--memory is {} bytes, but one probe takes {} at --resolution {}; raise the one or lower the other.",
-                                 memory, each, resolution)};
+                                 memory, each, baked.resolution)};
     return uint32_t(std::min<uint64_t>(memory / each, kMostProbes));
 }
 
@@ -91,19 +92,23 @@ std::string nameOf(const OpenSpace& open, const std::string& walk, float ground)
 Result<PlaceSettings> settingsOf(const PlaceOptions& options)
 {
     PlaceSettings settings = options.settings;
-    uint32_t resolution = options.resolution;
+    PointSettings baked; // that the budget is counted for
     const Result<std::optional<PointSettings>> quality = options.quality.load();
     if (!quality) return quality.error();
     if (*quality)
     {
-        options.quality.take("--resolution", resolution, (*quality)->resolution);
+        baked = **quality;
+        if (options.quality.command->count("--method") == 0 && settings.method != PlaceSettings::Method::grid)
+            if (const auto status = applyPlacement(settings, (*quality)->placement); !status) return status.error();
         // A budget or a grid decides the number of probes by itself.
         if ((*quality)->probes > 0 && options.memory == 0 && settings.method != PlaceSettings::Method::grid)
             options.quality.take("--count", settings.count, (*quality)->probes);
     }
     if (options.memory > 0)
     {
-        const Result<uint32_t> count = countFor(options.memory, resolution, options.compact);
+        if (!*quality || options.quality.command->count("--resolution") > 0) baked.resolution = options.resolution;
+        if (!*quality || options.quality.command->count("--compact") > 0) baked.compact = options.compact;
+        const Result<uint32_t> count = countFor(options.memory, baked);
         if (!count) return count.error();
         settings.count = *count;
     }

@@ -209,6 +209,7 @@ Status takeQuality(RenderOptions& options, Quality& tracer)
         options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
+        options.quality.take("--surface-probes", options.surfaceProbes, frame.surfaceProbes);
     }
     return success();
 }

@@ -40,17 +40,27 @@ std::string probeSetName(const PointSettings& settings)
     return fmt::format("{}-{}{}", settings.placement, settings.placement == "grid" ? settings.method + "-" : "", settings.probes);
 }
 
+Status applyPlacement(PlaceSettings& settings, const std::string& placement)
+{
+    if (placement == "skeleton")
+        settings.refine = Refine::none;
+    else if (placement == "balls")
+        settings.method = PlaceSettings::Method::balls;
+    else if (placement == "grid")
+        settings.method = PlaceSettings::Method::grid;
+    else if (placement != knobs::placement.value)
+        return Error{ErrorCode::badArgument, fmt::format("Placement '{}' is not known; there are {}, skeleton, balls and grid.", placement,
+                                                         knobs::placement.value)};
+    return success();
+}
+
 Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, const Progress& progress, const GridJudge& judge)
 {
     PlaceSettings place;
     place.count = settings.probes;
-    if (settings.placement == "skeleton")
-        place.refine = Refine::none;
-    else if (settings.placement == "balls")
-        place.method = PlaceSettings::Method::balls;
-    else if (settings.placement == "grid")
+    if (const auto status = applyPlacement(place, settings.placement); !status) return status.error();
+    if (place.method == PlaceSettings::Method::grid)
     {
-        place.method = PlaceSettings::Method::grid;
         place.fitGrid = true; // opponents at their best
         place.powersOfTwo = wantsPowersOfTwo(settings);
         if (judge)
@@ -60,9 +70,6 @@ Result<BenchProbes> placeFor(const Scene& scene, const PointSettings& settings, 
             place.pose = *best;
         }
     }
-    else if (settings.placement != "optimised")
-        return Error{ErrorCode::badArgument,
-                     fmt::format("Placement '{}' is not known; there are optimised, skeleton, balls and grid.", settings.placement)};
     PlaceReport report;
     Result<ProbeSet> set = placeProbes(scene, place, report, progress);
     if (!set) return set.error();

@@ -19,6 +19,9 @@ struct BenchProbes
 /// How much is wrong with what a method makes of a grid; the least is the best.
 using GridJudge = std::function<Result<double>(const ProbeGrid&)>;
 
+/// How a point's probes are placed, by the name of PointSettings::placement. Errors: badArgument.
+Status applyPlacement(PlaceSettings& settings, const std::string& placement);
+
 /// The probes that these settings ask for: by our placement, without its refinement (skeleton), from ball shrinking, or on a uniform grid
 /// in the reachable space, of the shapes and poses of gridPoses() in the one that is judged best; b0's has counts that are powers of two,
 /// the nearest to what was asked.

@@ -53,6 +53,7 @@ Result<Json> tune(const std::vector<Json>& points, const TuneGoal& goal)
     for (const Json& point : points)
     {
         if (point["method"] != "ours" || (point.contains("wrong") && point["wrong"].is_string())) continue;
+        if (point.value("knob", "") == "distance bits") continue; // files of light fields have all
         const auto over = excess(point, goal);
         const auto figure = figureOf(point, wanted);
         if (!over || !figure) continue;
@@ -83,9 +84,12 @@ void applyLevel(PointSettings& settings, const QualityLevel& level)
 {
     settings.resolution = level.resolution;
     settings.bounces = level.bounces;
+    settings.surfaceTexels = level.surfaceTexels;
+    settings.compact = level.compact;
     settings.quality = level.quality;
     settings.frame.glossyRays = level.glossyRays;
     settings.frame.traceEvery = level.traceEvery;
+    settings.frame.surfaceProbes = level.surfaceProbes;
     settings.frame.areaSamples = level.areaSamples;
     settings.frame.effects.denoise = level.denoise;
     settings.frame.raysBelow = level.raysBelow;

@@ -80,7 +80,7 @@ Result<std::unique_ptr<MapPool>> makePool(Gpu& gpu, MapFile file, uint32_t slots
 {
     auto pool = std::make_unique<MapPool>(MapPool{std::move(file), slots});
     const std::vector<uint32_t> nowhere(probes, gpu::kNoProbe);
-    auto where = gpu.makeTexelBuffer<uint32_t>(nowhere, VK_FORMAT_R32_UINT, "slots of maps");
+    auto where = gpu.makeBufferWith<uint32_t>(nowhere, 0, "slots of maps");
     if (!where) return where.error();
     pool->slotOfProbe = std::move(*where);
     auto asked = gpu.makeBuffer(probes * sizeof(uint32_t), 0, MemoryUse::readback, "maps asked for");
@@ -182,7 +182,7 @@ Status bindAll(Gpu& gpu, LightField::State& made, std::span<const Part> parts)
                                                {gpu::kFieldIrradianceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldPrefilteredBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
                                                {gpu::kFieldSurfaceBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
-                                               {gpu::kFieldSlotsBinding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}};
+                                               {gpu::kFieldSlotsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);

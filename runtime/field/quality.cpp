@@ -14,16 +14,33 @@ namespace
 // Reflections: where rays begin to pay moves with what a frame may cost (docs/light.md). Diffuse light is read at surfaces: nearer to the
 // truth than by rays.
 constexpr QualityLevel kLevels[] = {
-    {"draft", 128, knobs::bounces.value, {}, 1, 4, 2, true, 0.2f, false, 0.68f, 0.32f, 1.11f},
-    {"low", 128, knobs::bounces.value, {}, 1, 2, 2, true, 0.2f, false, 0.71f, 0.32f, 1.06f},
-    {"medium", 256, knobs::bounces.value, {}, 1, 1, 8, true, knobs::raysBelow.value, false, 1.00f, 1.00f, 1.00f},
-    {"high", 416, knobs::bounces.value, {}, 2, 1, 32, true, 0.6f, false, 1.65f, 2.48f, 0.96f},
-    {"reference", 512, knobs::bounces.value, {}, 8, 1, 32, true, 2.0f, false, 5.04f, 3.71f, 0.82f},
+    {"mobile", 128, knobs::bounces.value, 26, true, {}, 1, 16, 1, 2, true, 0.2f, false, 0.60f, 0.16f, 1.50f},
+    {"draft", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 4, 2, 2, true, 0.2f, false, 0.68f, 0.32f, 1.11f},
+    {"low", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 2, 2, 2, true, 0.2f, false, 0.71f, 0.32f, 1.06f},
+    {"medium",
+     256,
+     knobs::bounces.value,
+     knobs::surfaceTexels.value,
+     false,
+     {},
+     1,
+     1,
+     2,
+     8,
+     true,
+     knobs::raysBelow.value,
+     false,
+     1.00f,
+     1.00f,
+     1.00f},
+    {"high", 416, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 2, 1, 2, 32, true, 0.6f, false, 1.65f, 2.48f, 0.96f},
+    {"reference", 512, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 8, 1, 2, 32, true, 2.0f, false, 5.04f, 3.71f, 0.82f},
 };
 
 constexpr bool inRange(const QualityLevel& level)
 {
     return knobs::resolution.inRange(level.resolution) && knobs::bounces.inRange(level.bounces) &&
+           knobs::surfaceTexels.inRange(level.surfaceTexels) && knobs::surfaceProbes.inRange(level.surfaceProbes) &&
            knobs::glossyRays.inRange(level.glossyRays) && knobs::traceEvery.inRange(level.traceEvery) &&
            knobs::areaSamples.inRange(level.areaSamples) && knobs::raysBelow.inRange(level.raysBelow);
 }

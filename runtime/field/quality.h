@@ -31,13 +31,16 @@ struct Quality
 /// two (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
 struct QualityLevel
 {
-    std::string_view name; // draft, low, medium, high, reference
-    uint32_t resolution;   // of the bake, texels
-    uint32_t bounces;      // of the bake
-    Quality quality;       // of LightField::create
-    uint32_t glossyRays;   // a pixel
-    uint32_t traceEvery;   // pixels for each that is traced
-    uint32_t areaSamples;  // a pixel
+    std::string_view name;  // mobile, draft, low, medium, high, reference
+    uint32_t resolution;    // of the bake, texels
+    uint32_t bounces;       // of the bake
+    uint32_t surfaceTexels; // of the bake
+    bool compact;           // of the bake
+    Quality quality;        // of LightField::create
+    uint32_t glossyRays;    // a pixel
+    uint32_t traceEvery;    // pixels for each that is traced
+    uint32_t surfaceProbes; // blended at a look-up
+    uint32_t areaSamples;   // a pixel
     bool denoise;
     float raysBelow;    // roughness below which reflections are traced
     bool tracedDiffuse; // diffuse light by rays

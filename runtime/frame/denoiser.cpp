@@ -23,6 +23,7 @@ Result<DescriptorSet> makeFrameSet(Gpu& gpu, const Buffer& frame, std::span<cons
                                                     {gpu::kBaseColorMetallicBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                                     {gpu::kFrameBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
     bindings.insert(bindings.end(), passBindings.begin(), passBindings.end());
+    for (DescriptorSet::Binding& binding : bindings) binding.stages = VK_SHADER_STAGE_COMPUTE_BIT;
     auto set = DescriptorSet::create(gpu, bindings);
     if (set) set->write(gpu::kFrameBinding, frame);
     return set;
@@ -96,17 +97,23 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
     for (uint32_t i = 0; i < 2; ++i)
     {
         const History &own = histories[i], &other = histories[1 - i];
-        const std::pair<uint32_t, const GpuImage*> images[] = {{gpu::kBlendLightBinding, &light},
-                                                               {gpu::kBlendBeforeBinding, &other.light},
-                                                               {gpu::kBlendPointsBeforeBinding, &other.points},
-                                                               {gpu::kBlendAfterBinding, &own.light},
-                                                               {gpu::kBlendPointsAfterBinding, &own.points},
-                                                               {gpu::kPackedBinding, &desc.tiles->packedPixels()}};
+        struct Bound
+        {
+            uint32_t binding;
+            const GpuImage& image;
+            VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        };
+        const Bound images[] = {{gpu::kBlendLightBinding, light},
+                                {gpu::kBlendBeforeBinding, other.light, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                {gpu::kBlendPointsBeforeBinding, other.points, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                {gpu::kBlendAfterBinding, own.light},
+                                {gpu::kBlendPointsAfterBinding, own.points},
+                                {gpu::kPackedBinding, desc.tiles->packedPixels()}};
         std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-        for (const auto& [binding, image] : images) bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+        for (const Bound& bound : images) bindings.push_back({bound.binding, bound.type});
         auto set = makeFrameSet(*gpu, frame, bindings);
         if (!set) return set.error();
-        for (const auto& [binding, image] : images) set->write(binding, image->view(), VK_IMAGE_LAYOUT_GENERAL);
+        for (const Bound& bound : images) set->write(bound.binding, bound.image.view(), VK_IMAGE_LAYOUT_GENERAL);
         set->write(gpu::kTileBinding, desc.tiles->buffer());
         histories[i].blend = std::move(*set);
     }
@@ -166,7 +173,7 @@ void Denoiser::blend(VkCommandBuffer cmd, VkDescriptorSet firstSet)
     // The blend writes over the cleared points (hence transfer) and reads this frame's light, which the passes before made, and the other
     // history, of the frame before (hence compute).
     memoryBarrier(*gpu, cmd, transfer | compute, VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
     const VkDescriptorSet sets[] = {firstSet, own.blend.handle()};
     temporal.bind(cmd, sets);
     desc.tiles->dispatch(cmd, desc.term);

@@ -220,7 +220,11 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     if (!materialBuffer) return materialBuffer.error();
     made.materials = std::move(*materialBuffer);
 
-    made.lightList = buildLightList(scene, space, desc.light);
+    LightSettings light = desc.light;
+    const uint32_t most = gpu.properties.limits.maxImageArrayLayers; // some devices have no more than Vulkan asks for, 256
+    if (light.areaShadows)
+        light.emitterSamples = std::min(light.emitterSamples, most / 6), light.skySamples = std::min(light.skySamples, most);
+    made.lightList = buildLightList(scene, space, light);
     // Room for one light at least: the array behind the header is bound even when it is empty.
     std::vector<std::byte> list(sizeof(gpu::LightsHeader) + std::max<size_t>(made.lightList.lights.size(), 1) * sizeof(gpu::GpuLight));
     std::memcpy(list.data(), &made.lightList.header, sizeof(gpu::LightsHeader));
@@ -248,11 +252,15 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     made.textureSampler = std::move(*sampler);
 
     // One set for every pass that shades, the bake's and the frame's: each shader names of it what it reads.
-    std::vector<DescriptorSet::Binding> bindings = {{gpu::kMaterialsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                                    {gpu::kLightsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-    for (uint32_t textures : {gpu::kColorTexturesBinding, gpu::kDataTexturesBinding, gpu::kSunShadowsBinding, gpu::kSkyShadowsBinding,
-                              gpu::kPointShadowsBinding, gpu::kEmitterShadowsBinding})
-        bindings.push_back({textures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
+    // Of materials only what draws knows, so that compute passes, which have a light field's bindings besides, keep to what each may have.
+    constexpr VkDescriptorType kMap = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    std::vector<DescriptorSet::Binding> bindings = {
+        {gpu::kMaterialsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_FRAGMENT_BIT},
+        {gpu::kLightsBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+        {gpu::kColorTexturesBinding, kMap, VK_SHADER_STAGE_FRAGMENT_BIT},
+        {gpu::kDataTexturesBinding, kMap, VK_SHADER_STAGE_FRAGMENT_BIT}};
+    for (uint32_t shadows : {gpu::kSunShadowsBinding, gpu::kSkyShadowsBinding, gpu::kPointShadowsBinding, gpu::kEmitterShadowsBinding})
+        bindings.push_back({shadows, kMap});
     auto set = DescriptorSet::create(gpu, bindings);
     if (!set) return set.error();
     made.set = std::move(*set);
@@ -282,9 +290,14 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
                               smoothCompare, "The point lights' shadow maps"},
                              {emitterMaps, sizes.emitterShadow, lightList.emitterLayers, gpu::kEmitterShadowsBinding, VK_FORMAT_D32_SFLOAT,
                               nearestCompare, "The emitters' shadow maps"}};
+    const uint32_t most = gpu.properties.limits.maxImageArrayLayers;
     for (const MapKind& kind : kinds)
     {
         if (kind.layers == 0) continue;
+        if (kind.layers > most)
+            return Error{
+                ErrorCode::missingFeature,
+                fmt::format("{} are {} layers of an image; the device allows {}; light the scene by fewer", kind.what, kind.layers, most)};
         auto maps = depthArray(gpu, kind.size, kind.layers, kind.format, kind.what);
         if (!maps) return maps.error();
         kind.maps = std::move(*maps);

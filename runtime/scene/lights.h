@@ -15,11 +15,11 @@ namespace sconce
 struct LightSettings
 {
     uint32_t emitterSamples =
-        knobs::emitterSamples.value;                 // patches of emissive surfaces; bake time and shadow memory grow with it, noise falls
-    uint32_t skySamples = knobs::skySamples.value;   // directions of the sky; the same
-    bool areaShadows = true;                         // maps for both; without, they cost no memory, and there may be 65,536 of either
-    uint32_t sunShadow = knobs::sunShadow.value;     // texels a side of a directional light's map
-    uint32_t pointShadow = knobs::pointShadow.value; // texels a side of a point light's six faces
+        knobs::emitterSamples.value;               // patches of emissive surfaces; bake time and shadow memory grow with it, noise falls
+    uint32_t skySamples = knobs::skySamples.value; // directions of the sky; the same
+    bool areaShadows = true; // maps for both, as many as a device has layers for; without, there may be 65,536 of either
+    uint32_t sunShadow = knobs::sunShadow.value;         // texels a side of a directional light's map
+    uint32_t pointShadow = knobs::pointShadow.value;     // texels a side of a point light's six faces
     uint32_t emitterShadow = knobs::emitterShadow.value; // the same for emitter samples
     uint32_t skyShadow = knobs::skyShadow.value;         // texels a side of a sky direction's map
     std::vector<uint32_t> lamps = {}; // triangles, ascending, that are no emitters, though they shine: runtime/bake/lamps.h

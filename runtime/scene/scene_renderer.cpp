@@ -211,6 +211,7 @@ Status SceneRenderer::makeCompose()
         uint32_t binding;
         const GpuImage& image;
         bool made;
+        VkDescriptorType type = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     };
     // What is not made is not read: anything of the format may be bound in its place.
     const Shown images[] = {{gpu::kComposeDirectBinding, direct, true},
@@ -218,11 +219,11 @@ Status SceneRenderer::makeCompose()
                             {gpu::kComposeRoughBinding, indirect->state().roughImage, effects.rough},
                             {gpu::kComposeGlossyBinding, indirect->state().glossyImage, effects.glossy},
                             {gpu::kComposeMirrorBinding, indirect->state().mirrored(), effects.mirror},
-                            {gpu::kComposeBeautyBinding, beauty, true},
-                            {gpu::kComposeDiffuseLayerBinding, diffuseLayer, bool(diffuseLayer)},
-                            {gpu::kComposeGlossyLayerBinding, glossyLayer, bool(glossyLayer)}};
+                            {gpu::kComposeBeautyBinding, beauty, true, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                            {gpu::kComposeDiffuseLayerBinding, diffuseLayer, bool(diffuseLayer), VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                            {gpu::kComposeGlossyLayerBinding, glossyLayer, bool(glossyLayer), VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
     std::vector<DescriptorSet::Binding> bindings;
-    for (const Shown& shown : images) bindings.push_back({shown.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    for (const Shown& shown : images) bindings.push_back({shown.binding, shown.type});
     uint32_t made = 0;
     for (const auto& [term, on] : {std::pair{gpu::kTermDiffuse, effects.diffuse},
                                    {gpu::kTermRough, effects.rough},
@@ -392,7 +393,7 @@ void SceneRenderer::record(VkCommandBuffer cmd, const Camera& camera, uint32_t s
         // Read after write: area light adds to the diffuse term in place, composition reads every term and direct light. All of them are
         // compute passes.
         memoryBarrier(gpu, cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute,
-                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
         if (timer) timer->begin(cmd, name);
         const VkDescriptorSet sets[] = {scene.descriptorSet(), set.handle(), field.descriptorSet()};
         pipeline.bind(cmd, std::span(sets).first(withField ? 3 : 2));

@@ -189,3 +189,52 @@ TEST(QualityOption, SetsWhatTheCommandLineDoesNotSay)
     EXPECT_EQ(drawn({"--quality", folder / "tuned.json", "--trace-every", "2"})["trace_every"], 2);
     EXPECT_EQ(sconceCommand({"place", "cornell", "-o", probes, "--quality", "splendid"}).exit, 2);
 }
+
+/// All that `tune` may pick of ours, in each command that it is for.
+TEST(QualityOption, SetsPlacementAndBakeAsTheirOptionsDo)
+{
+    const TestFolder folder;
+    const auto quality = [&](const std::string& name, const json& settings)
+    {
+        writeText(folder / name, json{{"quality", 1}, {"settings", settings}}.dump());
+        return folder / name;
+    };
+    const auto done = [&](std::vector<std::string> arguments, const std::string& output)
+    {
+        arguments.insert(arguments.end(), {"-q", "-o", folder / output});
+        const CommandResult result = sconceCommand(arguments);
+        EXPECT_EQ(result.exit, 0) << result.err;
+        return readText(folder / output);
+    };
+    const std::string balls = quality("balls.json", {{"placement", "balls"}, {"probes", 2}});
+    EXPECT_EQ(json::parse(done({"place", "cornell", "--quality", balls}, "p.json"))["method"], "balls");
+    EXPECT_EQ(json::parse(done({"place", "cornell", "--quality", balls, "--method", "sdf"}, "q.json"))["method"], "sdf");
+
+    const std::string coarse = quality("coarse.json", {{"octree voxels", 32}});
+    const std::vector<std::string> bake{"bake", "cornell",      "--probes", folder / "p.json", "--bounces",
+                                        "0",    "--resolution", "64",       "--quality"};
+    const auto baked = [&](std::vector<std::string> more, const std::string& output)
+    {
+        std::vector<std::string> all = bake;
+        all.insert(all.end(), more.begin(), more.end());
+        return done(all, output);
+    };
+    const std::vector<std::pair<json, std::vector<std::string>>> cases{
+        {{{"surface texels", 26}}, {"--surface-texels", "26"}},
+        {{{"surface rays", 16}, {"surface refined", 0.0}}, {"--surface-rays", "16", "--surface-refined", "0"}},
+        {{{"compact", "on"}}, {"--compact"}},
+        {{{"field gather", "on"}, {"surface rays", 4}}, {"--gather", "field", "--surface-rays", "4"}}};
+    const std::string usual = baked({coarse}, "usual.sconce");
+    for (auto [settings, options] : cases)
+    {
+        settings["octree voxels"] = 32;
+        options.insert(options.begin(), coarse);
+        const std::string by = baked({quality("by.json", settings)}, "by.sconce");
+        EXPECT_TRUE(by == baked(options, "by.sconce")) << settings;
+        EXPECT_FALSE(by == usual) << settings;
+    }
+    const auto drawn = [&](const std::string& option, const std::string& value) {
+        return done({"render", "cornell", "--field", folder / "usual.sconce", "--size", "32x18", option, value}, "x.exr");
+    };
+    EXPECT_TRUE(drawn("--quality", quality("one.json", {{"surface probes", 1}})) == drawn("--surface-probes", "1"));
+}

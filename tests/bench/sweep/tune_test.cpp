@@ -73,7 +73,7 @@ TEST(QualityFiles, ComeBackAsTheSettingsTheyWereMadeOf)
     EXPECT_EQ(settingsJson(*again), settingsJson(settings));
     testing_support::writeText(file, "{}");
     EXPECT_NE(loadQuality(file).error().message.find("holds no settings"), std::string::npos);
-    EXPECT_NE(loadQuality("splendid").error().message.find("neither a file nor a level (draft, low, medium, high, reference)"),
+    EXPECT_NE(loadQuality("splendid").error().message.find("neither a file nor a level (mobile, draft, low, medium, high, reference)"),
               std::string::npos);
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/environment.h"
 #include "tests/support/run_command.h"
 
 namespace sconce
@@ -21,23 +22,6 @@ namespace
 
 using namespace testing_support;
 using Arguments = std::vector<std::string>;
-
-/// A variable of the environment for as long as this lives.
-class Variable
-{
-public:
-    Variable(const char* called, const std::string& value) : name(called)
-    {
-        if (const char* there = getenv(name)) before = there;
-        setenv(name, value.c_str(), 1);
-    }
-    ~Variable() { before ? setenv(name, before->c_str(), 1) : unsetenv(name); }
-    Variable(const Variable&) = delete;
-
-private:
-    const char* name;
-    std::optional<std::string> before;
-};
 
 /// A kind of call, as tests/support/failing_files.cpp names it, and the errno that it fails with.
 struct FileFault

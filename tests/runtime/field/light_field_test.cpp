@@ -64,8 +64,20 @@ TEST_F(GpuTrace, AgreesWithTheCpuRayByRay)
     EXPECT_LE(different, rays.size() / 2000) << "0.05 %: rays that graze a texel's corner may round to its other side";
 }
 
+bool hasBallots(const Gpu& gpu)
+{
+    VkPhysicalDeviceSubgroupProperties subgroups{};
+    subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+    VkPhysicalDeviceProperties2 all{};
+    all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    all.pNext = &subgroups;
+    vkGetPhysicalDeviceProperties2(gpu.host.physicalDevice, &all);
+    return (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT) != 0;
+}
+
 TEST_F(GpuTrace, RefilledLanesAnswerTheSameToTheBit)
 {
+    if (!hasBallots(gpu())) GTEST_SKIP() << "lanes can't be refilled";
     const FieldData field = litCornell();
     const RaySet set = cornellRays(20000);
     auto device = makeLightField(gpu(), field);
@@ -105,6 +117,7 @@ TEST_F(GpuTrace, OddRaysEndFinite)
 
 TEST_F(GpuTrace, AnswersAlikeThroughTexelsAndAddresses)
 {
+    if (gpu().properties.limits.maxTexelBufferElements < 1u << 20) GTEST_SKIP() << "texel buffers don't hold the field's words";
     const FieldData field = litCornell();
     std::vector<gpu::RayHit> hits[2];
     for (const WordAccess access : {WordAccess::texelBuffers, WordAccess::addresses})
