@@ -14,7 +14,7 @@ namespace
 // Reflections: where rays begin to pay moves with what a frame may cost (docs/light.md). Diffuse light is read at surfaces: nearer to the
 // truth than by rays.
 constexpr QualityLevel kLevels[] = {
-    {"mobile", 128, knobs::bounces.value, 26, true, {}, 1, 16, 1, 2, true, 0.2f, false, 0.60f, 0.16f, 1.50f},
+    {"mobile", 128, knobs::bounces.value, 26, true, {}, 1, 16, 1, 2, true, 0.0f, false, 0.52f, 0.21f, 1.60f},
     {"draft", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 4, 2, 2, true, 0.2f, false, 0.68f, 0.32f, 1.11f},
     {"low", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 2, 2, 2, true, 0.2f, false, 0.71f, 0.32f, 1.06f},
     {"medium",
