@@ -14,9 +14,9 @@ namespace
 // Reflections: where rays begin to pay moves with what a frame may cost (docs/light.md). Diffuse light is read at surfaces: nearer to the
 // truth than by rays.
 constexpr QualityLevel kLevels[] = {
-    {"mobile", 128, knobs::bounces.value, 26, true, {}, 1, 16, 1, 2, true, 0.0f, false, 0.52f, 0.21f, 1.60f},
-    {"draft", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 4, 2, 2, true, 0.2f, false, 0.68f, 0.32f, 1.11f},
-    {"low", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 2, 2, 2, true, 0.2f, false, 0.71f, 0.32f, 1.06f},
+    {"mobile", 128, knobs::bounces.value, 26, true, {}, 1, 16, 1, 2, true, 0.0f, false, 0.59f, 0.21f, 1.69f},
+    {"draft", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 4, 2, 2, true, 0.2f, false, 0.70f, 0.40f, 1.40f},
+    {"low", 128, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 1, 2, 2, 2, true, 0.2f, false, 0.70f, 0.40f, 1.40f},
     {"medium",
      256,
      knobs::bounces.value,
@@ -33,8 +33,8 @@ constexpr QualityLevel kLevels[] = {
      1.00f,
      1.00f,
      1.00f},
-    {"high", 416, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 2, 1, 2, 32, true, 0.6f, false, 1.65f, 2.48f, 0.96f},
-    {"reference", 512, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 8, 1, 2, 32, true, 2.0f, false, 5.04f, 3.71f, 0.82f},
+    {"high", 416, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 2, 1, 2, 32, true, 0.6f, false, 1.25f, 2.33f, 0.97f},
+    {"reference", 512, knobs::bounces.value, knobs::surfaceTexels.value, false, {}, 8, 1, 2, 32, true, 2.0f, false, 2.55f, 3.44f, 0.92f},
 };
 
 constexpr bool inRange(const QualityLevel& level)

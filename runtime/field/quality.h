@@ -28,7 +28,7 @@ struct Quality
 };
 
 /// A named choice of every knob but the number of probes, with what it was measured to cost (docs/accuracy.md). A host bakes with the first
-/// two (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
+/// four (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
 struct QualityLevel
 {
     std::string_view name;  // mobile, draft, low, medium, high, reference

@@ -1,5 +1,7 @@
 #include "bench/sweep/tune.h"
 
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/run_command.h"
@@ -93,6 +95,36 @@ TEST(QualityLevels, RiseInWhatTheyTakeAndAreReadByName)
     EXPECT_EQ(high->frame.raysBelow, findQualityLevel("high")->raysBelow);
     EXPECT_FALSE(loadQuality("reference")->frame.effects.tracedDiffuse) << "surface light is nearer to the truth";
     EXPECT_EQ(findQualityLevel("splendid"), nullptr);
+}
+
+std::vector<double> numbersOf(const std::string& list)
+{
+    std::vector<double> numbers;
+    std::istringstream text(list);
+    for (std::string one; std::getline(text, one, ',');) numbers.push_back(std::stod(one));
+    return numbers;
+}
+
+TEST(QualityLevels, CostWhatWasMeasured)
+{
+    const Json row = Json::parse(testing_support::readText(SCONCE_SOURCES "/bench/results/knobs.json"))["rows"]["level"];
+    const auto frame = numbersOf(row["frame_ms"]), megabytes = numbersOf(row["mb"]), flip = numbersOf(row["beauty_flip"]);
+    std::istringstream names(row["value"].get<std::string>());
+    size_t medium = 0, count = 0;
+    for (std::string name; std::getline(names >> std::ws, name, ','); ++count)
+    {
+        ASSERT_LT(count, qualityLevels().size());
+        EXPECT_EQ(name, qualityLevels()[count].name);
+        if (name == "medium") medium = count;
+    }
+    ASSERT_EQ(count, qualityLevels().size());
+    for (size_t i = 0; i < count; ++i)
+    {
+        const QualityLevel& level = qualityLevels()[i];
+        EXPECT_NEAR(level.time, frame[i] / frame[medium], 0.02 * level.time) << level.name;
+        EXPECT_NEAR(level.memory, megabytes[i] / megabytes[medium], 0.02 * level.memory) << level.name;
+        EXPECT_NEAR(level.error, flip[i] / flip[medium], 0.02 * level.error) << level.name;
+    }
 }
 
 } // namespace
