@@ -84,7 +84,6 @@ void applyLevel(PointSettings& settings, const QualityLevel& level)
 {
     settings.resolution = level.resolution;
     settings.bounces = level.bounces;
-    settings.surfaceTexels = level.surfaceTexels;
     settings.compact = level.compact;
     settings.quality = level.quality;
     settings.frame.glossyRays = level.glossyRays;

@@ -28,13 +28,12 @@ struct Quality
 };
 
 /// A named choice of every knob but the number of probes, with what it was measured to cost (docs/accuracy.md). A host bakes with the first
-/// four (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
+/// three (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
 struct QualityLevel
 {
     std::string_view name;  // mobile, draft, low, medium, high, reference
     uint32_t resolution;    // of the bake, texels
     uint32_t bounces;       // of the bake
-    uint32_t surfaceTexels; // of the bake
     bool compact;           // of the bake
     Quality quality;        // of LightField::create
     uint32_t glossyRays;    // a pixel
