@@ -3,11 +3,12 @@
 # where no sun comes in, by a point light at twelve places), and a field of light groups, whose lamps, sun and sky are switched and dimmed to sixteen
 # states. Prints the rows of bench/results/light_states.json.
 # states_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH of the pictures
-# [160x90], RESOLUTION=texels [128], RAYS=that gather light for a texel, and links of live light [16], OUT=folder [out/states].
+# [160x90], RESOLUTION=texels [128], RAYS=that gather light for a texel, and links of live light [64]: of few a fresh bake draws other
+# lights by lot, OUT=folder [out/states].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source bench/pages/views.sh
-scenes=${SCONCE_SCENES:-../shared/scenes} out=${OUT:-out/states} size=${SIZE:-160x90} resolution=${RESOLUTION:-128} rays=${RAYS:-16}
+scenes=${SCONCE_SCENES:-../shared/scenes} out=${OUT:-out/states} size=${SIZE:-160x90} resolution=${RESOLUTION:-128} rays=${RAYS:-64}
 [[ -n ${SCONCE:-} ]] || tools/build.sh release sconce_command >&2
 sconce=${SCONCE:-build/release/tools/sconce}
 list=("$@")
