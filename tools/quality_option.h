@@ -17,10 +17,11 @@ struct QualityOption
     void add(CLI::App* to);
     /// None where the option isn't given.
     Result<std::optional<PointSettings>> load() const;
-    /// target = value, unless the command line has the option.
+    /// target = value, unless the command line has the option or the command doesn't: `capture` keeps no maps in blocks.
     template <class T> void take(const char* option, T& target, const T& value) const
     {
-        if (command->count(option) == 0) target = value;
+        const CLI::Option* known = command->get_option_no_throw(option);
+        if (known && known->count() == 0) target = value;
     }
 };
 
