@@ -5,7 +5,8 @@
 #include "gbuffer_read.glsl"
 
 // The frame's picture: direct light and the terms of indirect light that a pixel has and that are made; the image of a term is read where
-// the pixel has the term, and nowhere else. What is read is sampled: some devices let a pass have four images to store into and no more. Dispatch: ceil(width/8) x ceil(height/8).
+// the pixel has the term, and nowhere else. What is read is sampled: some devices let a pass have four images to store into and no more.
+// Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = kMadeId) const uint kMade = 15u;     // bit i: term i is made
 layout(constant_id = kDiffuseLayerId) const bool kDiffuseLayer = true; // write the term's share of the picture, too

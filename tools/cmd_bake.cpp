@@ -79,7 +79,11 @@ Status settle(const BakeOptions& options, const Context& context, Asked& asked)
         options.quality.take("--surface-texels", settings.surfaceTexels, (*quality)->bakedSurfaceTexels());
         options.quality.take("--surface-rays", settings.surfaceRays, (*quality)->surfaceRays);
         options.quality.take("--surface-refined", settings.surfaceRefined, (*quality)->surfaceRefined);
-        options.quality.take("--compact", settings.compact, (*quality)->compact);
+        // Blocks give way to what the line asks for, which they can't hold.
+        if (settings.chart == gpu::kChartCube && settings.liveLinks == 0 && options.groups.empty())
+            options.quality.take("--compact", settings.compact, (*quality)->compact);
+        else if ((*quality)->compact)
+            note(context, "Note: the maps are not put in blocks, as --quality says: octahedral maps and light that may change can't be.");
         options.quality.take("--gather", gather, std::string(knobs::kGathers[(*quality)->fieldGather ? 1 : 0]));
         settings.octree.voxels = (*quality)->octreeVoxels;
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Light that has changed against a fresh bake in that light, picture by picture of the same views: a field of no light of its own, relit by twelve suns (or,
 # where no sun comes in, by a point light at twelve places), and a field of light groups, whose lamps, sun and sky are switched and dimmed to sixteen
-# states. Prints the rows of bench/results/light_states.json.
+# states. Prints a row a scene.
 # states_table.sh [SCENE[=COUNT]...] as bench/pages/surface_table.sh. Environment: SCONCE=the command, built when not given, SIZE=WxH of the pictures
 # [160x90], RESOLUTION=texels [128], RAYS=that gather light for a texel, and links of live light [64]: of few a fresh bake draws other
 # lights by lot, OUT=folder [out/states].
@@ -38,7 +38,7 @@ for entry in "${list[@]}"; do
     baked=(--probes "$at.probes.json" --resolution "$resolution" --surface-rays "$rays")
     rm -f "$at".light-*.json "$at".groups-*.json
     case $name in
-        hall | modern_hall) suns=no groups=(warm cool amber) ;;
+        hall | modern_hall) suns=no groups=(warm cool amber) ;; # the second has one kind of emitter, and no groups
         *) suns=yes groups=(sun sky emitters) ;;
     esac
 
@@ -65,7 +65,7 @@ P
 
     case $name in
         hall) members=("warm=warm panel" "cool=cool lamp" "amber=amber lamp") ;;
-        modern_hall) members=() ;; # one kind of emitter
+        modern_hall) members=() ;;
         *) members=(sun sky emitters) ;;
     esac
     made=()

@@ -220,7 +220,8 @@ void narrow(Limits& own)
 }
 
 /// What every device can do with a format beyond what it samples and draws into: storage images, and linear filters of 32-bit floats that
-/// some lack. The Vulkan 1.3 specification, "Required Format Support".
+/// some lack. Depth is filtered linearly all the same: a device may lack it, and none is known to. The Vulkan 1.3 specification, "Required
+/// Format Support".
 VkFormatFeatureFlags without(VkFormat format)
 {
     if (profile().coreFeatures) return 0;

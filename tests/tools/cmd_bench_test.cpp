@@ -225,6 +225,10 @@ TEST(QualityOption, SetsPlacementAndBakeAsTheirOptionsDo)
         {{{"compact", "on"}}, {"--compact"}},
         {{{"field gather", "on"}, {"surface rays", 4}}, {"--gather", "field", "--surface-rays", "4"}}};
     const std::string usual = baked({coarse}, "usual.sconce");
+    // What blocks can't hold is asked for by the line.
+    const std::string blocks = quality("blocks.json", {{"compact", "on"}, {"octree voxels", 32}, {"surface rays", 4}});
+    EXPECT_FALSE(baked({blocks, "--group", "emitters"}, "groups.sconce").empty());
+    EXPECT_FALSE(baked({blocks, "--chart", "octahedral"}, "octahedral.sconce").empty());
     for (auto [settings, options] : cases)
     {
         settings["octree voxels"] = 32;
