@@ -12,8 +12,10 @@ import pathlib
 import struct
 import sys
 
+# A sampled image's format is the host's alone.
 G_BUFFER = {"gDepth": 4, "gNormalRoughness": 8, "gBaseColorMetallic": 8, "gGeometricNormal": 4}  # as SceneRenderer::make() has them
 EMISSION = 8  # which is drawn beside them, into the direct light
+SAMPLED = {"direct": 8, "diffuse": 8, "rough": 8, "glossy": 8, "mirror": 8, "before": 8, "pointsBefore": 4}  # light as it is stored, and its points
 TEXEL_BYTES = {1: 16, 2: 8, 3: 4, 30: 16, 33: 4, 35: 8}  # of SPIR-V's formats: Rgba32f, Rgba16f, R32f, Rgba32ui, R32ui, Rg32ui
 READ_PIXEL = {"gDepth", "gNormalRoughness", "gBaseColorMetallic"}
 # The command's frame without layers: passes, how often each runs, and images that it doesn't touch.
@@ -79,7 +81,7 @@ def bytes_of(file, without):
     for name, reads, writes, texel in images_of(file):
         if name in without:
             continue
-        texel = G_BUFFER[name] if texel is None else texel
+        texel = (G_BUFFER | SAMPLED)[name] if texel is None else texel
         read, written = read + texel * reads, written + texel * writes
     return read, written
 
