@@ -21,7 +21,8 @@ struct DistanceField
     size_t index(glm::ivec3 cell) const { return size_t(cell.x) + size_t(size.x) * (size_t(cell.y) + size_t(size.y) * size_t(cell.z)); }
     glm::ivec3 cell(size_t at) const
     {
-        return {int(at % size_t(size.x)), int(at / size_t(size.x) % size_t(size.y)), int(at / (size_t(size.x) * size_t(size.y)))};
+        const auto i = uint32_t(at), row = i / uint32_t(size.x); // of 32 bits, as all cells' numbers: several times as fast to divide
+        return {int(i - row * uint32_t(size.x)), int(row % uint32_t(size.y)), int(row / uint32_t(size.y))};
     }
     bool inside(glm::ivec3 at) const { return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, size)); }
     glm::ivec3 cellAt(vec3 point) const { return glm::ivec3(glm::floor((point - origin) / voxel)); } // may lie outside

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The whole test suite: installs what is missing, builds, runs. tests/run.sh [ctest options, e.g. -R field]; PRESET=debug for sanitizers.
+# The whole test suite: installs what is missing, builds, runs. tests/run.sh [ctest options, e.g. -R Field: suites of that name]; PRESET=debug for
+# sanitizers. One test of a suite: build/release/tests/FOLDER/sconce_FOLDER_tests --gtest_filter=SUITE.TEST.
 # Fails, too, where a test was skipped that tests/may_skip.txt doesn't name.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,5 +16,5 @@ log=build/$preset-tests.log
 status=0
 ctest --preset "$preset" -j "${JOBS:-2}" "$@" 2>&1 | tee "$log" || status=$?
 echo
-tests/tree/skips.py tests/may_skip.txt "$log" || [[ $status -ne 0 ]] || status=1
+tests/tree/skips.py tests/may_skip.txt "$log" "build/$preset/Testing/Temporary/LastTest.log" || [[ $status -ne 0 ]] || status=1
 exit "$status"

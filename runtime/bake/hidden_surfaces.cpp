@@ -120,26 +120,37 @@ std::vector<uint32_t> keysOf(std::span<const Place> places, const FieldData& lit
     return keys;
 }
 
-/// Sorts places by their keys in voxels of info.hidden, those of one key as they come.
-/// @return  where each key's begin and end
-std::vector<std::pair<size_t, size_t>> sortByKey(std::vector<Place>& places, const FieldData& lit, float offset)
+/// Puts the numbers of places in the order of the places' keys, those of one key as they are.
+/// @param keys  of the places
+/// @return      how many keys there are
+size_t orderByKey(std::vector<uint32_t>& order, std::span<const uint32_t> keys)
 {
-    const std::vector<uint32_t> keys = keysOf(places, lit, offset);
-    std::vector<uint64_t> order(keys.size()); // a key and an index: faster to sort than places
-    for (size_t i = 0; i < keys.size(); ++i) order[i] = uint64_t(keys[i]) << 32 | i;
-    std::ranges::sort(order);
-    std::vector<Place> sorted;
-    sorted.reserve(places.size());
-    std::vector<std::pair<size_t, size_t>> ranges;
-    for (const uint64_t next : order)
+    std::vector<uint64_t> sorted(order.size()); // a key, and where its place was: faster to sort than places
+    for (size_t i = 0; i < order.size(); ++i) sorted[i] = uint64_t(keys[order[i]]) << 32 | i;
+    std::ranges::sort(sorted);
+    const std::vector<uint32_t> before = order;
+    size_t count = 0;
+    for (size_t i = 0; i < sorted.size(); ++i)
     {
-        if (const auto key = uint32_t(next >> 32); sorted.empty() || sorted.back().key != key) ranges.emplace_back(sorted.size(), 0);
-        sorted.push_back(places[uint32_t(next)]);
-        sorted.back().key = uint32_t(next >> 32);
-        ranges.back().second = sorted.size();
+        order[i] = before[uint32_t(sorted[i])];
+        count += i == 0 || sorted[i] >> 32 != sorted[i - 1] >> 32;
     }
-    places = std::move(sorted);
-    return ranges;
+    return count;
+}
+
+/// Places in an order, with their keys, and where each key's begin and end.
+void arrange(HiddenPlaces& of, std::span<const uint32_t> order, std::span<const uint32_t> keys)
+{
+    std::vector<Place> arranged;
+    arranged.reserve(order.size());
+    for (const uint32_t i : order)
+    {
+        if (arranged.empty() || arranged.back().key != keys[i]) of.keys.emplace_back(arranged.size(), 0);
+        arranged.push_back(of.places[i]);
+        arranged.back().key = keys[i];
+        of.keys.back().second = arranged.size();
+    }
+    of.places = std::move(arranged);
 }
 
 /// Mean light at some places of one key, by how open they are, since what lies between a floor and the ground that goes on below it nobody
@@ -252,12 +263,15 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, const T
     const double side = double(lit.info.voxel) * lit.info.scale * double(1u << shift);
     HiddenPlaces found;
     found.places = hiddenPlaces(lit, triangles, side / std::sqrt(kPointsOfVoxel));
-    found.keys = sortByKey(found.places, lit, triangles.offset());
-    while (found.keys.size() > kMostKeysOfProbe * lit.info.probeCount && lit.info.hidden + 1 < 1u << gpu::kHiddenShiftBits)
+    // From fine voxels to coarse ones: places of one voxel keep the order of the finer ones, so that few of them lie all over it.
+    std::vector<uint32_t> order(found.places.size()), keys;
+    std::iota(order.begin(), order.end(), 0u);
+    for (;; ++lit.info.hidden)
     {
-        ++lit.info.hidden;
-        found.keys = sortByKey(found.places, lit, triangles.offset());
+        keys = keysOf(found.places, lit, triangles.offset());
+        if (orderByKey(order, keys) <= kMostKeysOfProbe * lit.info.probeCount || lit.info.hidden + 1 == 1u << gpu::kHiddenShiftBits) break;
     }
+    arrange(found, order, keys);
     found.shift = std::exchange(lit.info.hidden, 0u); // that look-ups do without
     choosePlaces(found, lit, triangles, sent);
     return found;

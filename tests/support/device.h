@@ -86,7 +86,7 @@ private:
 class DeviceTest : public testing::Test
 {
 protected:
-    Gpu& gpu() { return shared.gpu(); }
+    virtual Gpu& gpu() { return shared.gpu(); }
 
 private:
     SharedDevice shared;

@@ -72,48 +72,73 @@ class Mirror(Tree):
 
 
 class Skips(Tree):
-    LOG = """      Start  1: Camera.Looks
- 1/3 Test  #1: Camera.Looks .....................   Passed    0.02 sec
- 2/3 Test #22: Real/Scenes.Load/3  # GetParam() = 16-byte object <C0-61> ...***Skipped   0.01 sec
+    LOG = """      Start  1: Camera
+ 1/3 Test  #1: Camera .....................   Passed    0.02 sec
+ 2/3 Test #22: Load ...***Skipped   0.01 sec
  3/3 Test  #3: A.NameThatIsSoLongThatOnlyThreeDotsFollowIt ...***Skipped   0.01 sec
 
 100% tests passed, 0 tests failed out of 3
+"""
+    OUTPUTS = """[ RUN      ] Camera.Looks
+[  SKIPPED ] Camera.Looks (0 ms)
+[       OK ] Camera.Turns (0 ms)
+[  SKIPPED ] 1 test, listed below:
+[  SKIPPED ] Camera.Looks
+[  SKIPPED ] Real/Load.Scenes/3, where GetParam() = 16-byte object <C0-61> (0 ms)
 """
 
     def skips(self, *lines):
         self.write("may_skip.txt", "".join(line + "\n" for line in lines))
         self.write("log", self.LOG)
-        return run("skips.py", self.root / "may_skip.txt", self.root / "log")
+        self.write("outputs", self.OUTPUTS)
+        return run("skips.py", self.root / "may_skip.txt", self.root / "log", self.root / "outputs")
 
     def test_named_skips_pass_with_their_reasons(self):
-        code, text = self.skips("# comment", r"Real/Scenes\.Load/\d  the scenes are elsewhere", "A.NameThat.*  dots")
+        code, text = self.skips("# comment", r"Real/Load\.Scenes/\d  the scenes are elsewhere", "A.NameThat.*  dots", "Camera.Looks  dark")
         self.assertEqual(code, 0, text)
-        self.assertIn("Skipped tests: 2", text)
-        self.assertIn("Real/Scenes.Load/3: the scenes are elsewhere", text)
+        self.assertIn("Skipped tests: 3", text)
+        self.assertIn("Real/Load.Scenes/3: the scenes are elsewhere", text)
 
     def test_unnamed_skip_fails(self):
-        code, text = self.skips("Real/Scenes.*  the scenes are elsewhere")
+        code, text = self.skips("Real/Load.*  the scenes are elsewhere", "Camera.*  dark")
         self.assertEqual(code, 1, text)
         self.assertIn("A.NameThatIsSoLongThatOnlyThreeDotsFollowIt: NOT IN", text)
 
+    def test_unnamed_skip_in_a_suite_that_passes_fails(self):
+        code, text = self.skips("Real/Load.*  the scenes are elsewhere", "A.NameThat.*  dots")
+        self.assertEqual(code, 1, text)
+        self.assertIn("Camera.Looks: NOT IN", text)
+
     def test_part_of_a_name_is_not_the_name(self):
-        self.assertEqual(self.skips("Scenes.Load  elsewhere", "A.NameThat.*  dots")[0], 1)
+        self.assertEqual(self.skips("Load.Scenes  elsewhere", "A.NameThat.*  dots", "Camera.*  dark")[0], 1)
 
     def test_line_without_reason(self):
-        code, text = self.skips("Real/Scenes.*")
+        code, text = self.skips("Real/Load.*")
         self.assertEqual(code, 1, text)
         self.assertIn("has no reason", text)
 
+    def of_build(self, *lines):
+        self.write("may_skip.txt", "".join(line + "\n" for line in lines))
+        return run("skips.py", self.root / "may_skip.txt", "--of", self.root)
+
     def test_line_of_no_test(self):
         self.write("CTestTestfile.cmake", 'add_test(Camera.Looks "true")\n')
-        self.write("may_skip.txt", "Camera.*  dark\n")
-        self.assertEqual(run("skips.py", self.root / "may_skip.txt", "--of", self.root)[0], 0)
-        self.write("may_skip.txt", "Camera.*  dark\nLens.Bends  gone\n")
-        code, text = run("skips.py", self.root / "may_skip.txt", "--of", self.root)
+        self.assertEqual(self.of_build("Camera.*  dark")[0], 0)
+        code, text = self.of_build("Camera.*  dark", "Lens.Bends  gone")
         self.assertEqual(code, 1)
         self.assertIn("Lens.Bends is no test", text)
-        self.write("CTestTestfile.cmake", 'add_test(lens_tests_NOT_BUILT "lens_tests")\n')
-        self.assertEqual(run("skips.py", self.root / "may_skip.txt", "--of", self.root)[0], 77)
+
+    def test_suites_of_a_program(self):
+        program = self.root / "lens_tests"
+        self.write("CTestTestfile.cmake", f'add_test(Lens "{program}" "--gtest_filter=Lens.*:*/Lens.*")\n')
+        self.assertEqual(self.of_build("Real/Lens.Bends/0  bent")[0], 77)
+        self.write("lens_tests", "#!/bin/sh\necho 'Real/Lens.\n  Bends/0  # GetParam() = 3'\n")
+        program.chmod(0o755)
+        self.assertEqual(self.of_build("Real/Lens.Bends/0  bent"), (0, "\n"))
+        self.write("lens_tests", "#!/bin/sh\necho 'Real/Lens.\n  Bends/0  # GetParam() = 3\nCamera.\n  Looks'\n")
+        code, text = self.of_build("Real/Lens.Bends/0  bent")
+        self.assertEqual(code, 1, text)
+        self.assertIn("Camera is no test of ctest's", text)
 
 
 class Formatted(Tree):

@@ -36,6 +36,21 @@ void expectSentence(const CommandResult& result, int exit, const std::string& pa
     EXPECT_TRUE(result.out.empty()) << result.out;
 }
 
+/// Of six probes that `place` chose in cornell the first, as its file has them; placed once.
+void writeProbes(const std::filesystem::path& to, size_t count)
+{
+    static const json placed = []
+    {
+        const TestFolder folder;
+        EXPECT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "6", "-q"}).exit, 0);
+        return json::parse(readText(folder / "p.json"));
+    }();
+    json some = placed;
+    auto& probes = some.at("probes");
+    probes.erase(probes.begin() + std::ptrdiff_t(count), probes.end());
+    writeText(to, some.dump());
+}
+
 std::vector<std::vector<std::string>> csvRows(const std::string& text)
 {
     std::vector<std::vector<std::string>> rows;
@@ -464,7 +479,7 @@ TEST(Command, ProbesAndPixelsAreExplained)
 TEST(Command, RenderWritesTheLayersThatWereAskedFor)
 {
     const TestFolder folder;
-    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--grid", "1x1x2", "-q"}).exit, 0);
+    writeText(folder / "p.json", R"({"probes":[{"position":[0,1,-0.5]},{"position":[0,1,0.5]}]})");
     const CommandResult bake =
         sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "64", "-q"});
     ASSERT_EQ(bake.exit, 0) << bake.err;
@@ -513,7 +528,7 @@ TEST(Command, RenderWritesTheLayersThatWereAskedFor)
 TEST(Command, APictureNeedsNoGeometry)
 {
     const TestFolder folder;
-    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "6", "-q"}).exit, 0);
+    writeProbes(folder / "p.json", 6);
     const CommandResult bake =
         sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "--effects", "all", "--resolution", "256", "--surface-texels",
                        "26", "--surface-rays", "16", "--bounces", "2", "-o", folder / "f.sconce", "-q"});
@@ -571,7 +586,7 @@ TEST(Command, WhatMovesIsDrawnAndTold)
     const TestFolder folder;
     writeText(folder / "s.json",
               R"({"shapes": [{"kind": "sphere", "centre": [0, 0.35, 0.75], "half": [0.2, 0, 0], "albedo": [0.6, 0.6, 0.6]}]})");
-    ASSERT_EQ(sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "4", "-q"}).exit, 0);
+    writeProbes(folder / "p.json", 4);
     ASSERT_EQ(sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "--resolution", "128", "--surface-texels", "26",
                              "--surface-rays", "64", "-o", folder / "f.sconce", "-q"})
                   .exit,
@@ -617,7 +632,7 @@ TEST(Command, LightGroupsAreDimmedInPicturesFilesAndReferences)
         arguments.insert(arguments.end(), more.begin(), more.end());
         return sconceCommand(arguments);
     };
-    ASSERT_EQ(with("place", {"-o", folder / "p.json", "--count", "4", "-q"}).exit, 0);
+    writeProbes(folder / "p.json", 4);
     const std::vector<std::string> bake = {"--probes", folder / "p.json", "-o", folder / "f.sconce", "--resolution", "64", "--json"};
     const auto grouped = [&](std::vector<std::string> groups)
     {

@@ -56,8 +56,19 @@ std::map<std::string, std::string> filesOf(const TestFolder& folder, bool all)
     std::string rays = "ox,oy,oz,dx,dy,dz\n";
     for (int i = 0; i < 64; ++i) rays += fmt::format("0,1,0.2,{},{},{}\n", i % 8 - 3.5, i / 8 - 3.5, i % 3 - 1.3);
     writeText(folder / "rays.csv", rays);
-    const Arguments bake{
-        "bake", "cornell-glossy", "--probes", folder / "probes.json", "--resolution", "128", "--surface-rays", "8", "--bounces", "2", "-q"};
+    const Arguments bake{"bake",
+                         "cornell-glossy",
+                         "--probes",
+                         folder / "probes.json",
+                         "--resolution",
+                         "128",
+                         "--surface-texels",
+                         "26",
+                         "--surface-rays",
+                         "8",
+                         "--bounces",
+                         "2",
+                         "-q"};
     const Arguments render{"render", "cornell-glossy", "--size", "64x36", "-q"};
     struct Step
     {
@@ -72,7 +83,7 @@ std::map<std::string, std::string> filesOf(const TestFolder& folder, bool all)
          {Step{bake, {}, "f.sconce", true},
           {bake, {"--live-links", "8"}, "live.sconce"},
           {bake, {"--compact"}, "compact.sconce"},
-          {bake, {"--gather", "field", "--surface-texels", "26"}, "through.sconce"},
+          {bake, {"--gather", "field"}, "through.sconce"},
           {none, {"relight", folder / "live.sconce", "--lights", folder / "lights.json", "-q"}, "relit.sconce"},
           {render, {"--field", folder / "f.sconce", "--effects", "all", "--temporal", "--frames", "2"}, "all.exr", true},
           {render, {"--field", folder / "live.sconce", "--shapes", folder / "shapes.json"}, "shapes.exr"},

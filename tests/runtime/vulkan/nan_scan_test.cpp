@@ -1,6 +1,5 @@
 // The scan for NaN and infinity that the debug preset's tests run with: what is planted is named, and what is clean is not.
 #include <array>
-#include <cstdlib>
 #include <limits>
 #include <map>
 
@@ -10,6 +9,7 @@
 #include "runtime/vulkan/nan_scan.h"
 #include "scene/builtin_scenes.h"
 #include "tests/properties/frames/frame_test.h"
+#include "tests/support/environment.h"
 
 namespace sconce
 {
@@ -18,29 +18,33 @@ namespace
 
 using namespace testing_support;
 
+constexpr const char* kVariable = "SCONCE_NAN_SCAN";
+
+/// What a submit says that scans words.
+std::string sentenceOf(Gpu& gpu, std::span<const uint32_t> words, NanScan::Words how)
+{
+    auto buffer = gpu.makeBufferWith(words, 0, "planted words");
+    EXPECT_TRUE(buffer);
+    how.count = how.count > 0 ? how.count : words.size() - how.first;
+    const auto status = gpu.submit([&](VkCommandBuffer cmd) { scanBuffer(gpu, cmd, "planting", *buffer, how); });
+    return status ? std::string() : status.error().message;
+}
+
+/// On a device of its own, which scans.
 class NanScanTest : public FrameTest
 {
 protected:
-    void SetUp() override
+    static void SetUpTestSuite()
     {
-        const char* was = std::getenv(kVariable);
-        before = was ? was : "";
-        setenv(kVariable, "1", 1);
+        const Variable scans(kVariable, "1");
+        scanning = std::make_unique<ValidatedDevice>();
+        scanning->gpu();
     }
-    void TearDown() override { setenv(kVariable, before.c_str(), 1); }
+    static void TearDownTestSuite() { scanning.reset(); }
+    Gpu& gpu() override { return scanning->gpu(); }
+    std::string sentenceOf(std::span<const uint32_t> words, NanScan::Words how) { return sconce::sentenceOf(gpu(), words, how); }
 
-    /// What a submit says that scans words.
-    std::string sentenceOf(std::span<const uint32_t> words, NanScan::Words how)
-    {
-        auto buffer = gpu().makeBufferWith(words, 0, "planted words");
-        EXPECT_TRUE(buffer);
-        how.count = how.count > 0 ? how.count : words.size() - how.first;
-        const auto status = gpu().submit([&](VkCommandBuffer cmd) { scanBuffer(gpu(), cmd, "planting", *buffer, how); });
-        return status ? std::string() : status.error().message;
-    }
-
-    static constexpr const char* kVariable = "SCONCE_NAN_SCAN";
-    std::string before;
+    static inline std::unique_ptr<ValidatedDevice> scanning;
 };
 
 constexpr uint32_t kNan = 0x7fc00000u, kInfinity = 0x7f800000u, kOne = 0x3f800000u, kLargest = 0x7f7fffffu;
@@ -243,11 +247,12 @@ TEST_F(NanScanTest, LooksAtEverythingThatAPassWrites)
         EXPECT_TRUE(names.scanned.contains(name)) << name;
 }
 
-TEST_F(NanScanTest, WithoutTheVariableNothingIsScanned)
+TEST(NanScanOff, WithoutTheVariableNothingIsScanned)
 {
-    setenv(kVariable, "0", 1);
-    EXPECT_EQ(gpu().nanScan(), nullptr);
-    EXPECT_EQ(sentenceOf(std::array{kNan}, {}), "");
+    const Variable off(kVariable, "0");
+    ValidatedDevice own;
+    EXPECT_EQ(own.gpu().nanScan(), nullptr);
+    EXPECT_EQ(sentenceOf(own.gpu(), std::array{kNan}, {}), "");
 }
 
 } // namespace
