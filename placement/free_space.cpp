@@ -103,18 +103,44 @@ template <class Visit> void forNeighbours(const DistanceField& field, size_t at,
     }
 }
 
-/// Visits the cells joined to the open ones through faces, of those that `enters` lets in; `enters` has to mark what it lets in.
-template <class Enters> void flood(const DistanceField& field, std::vector<uint32_t>& open, const Enters& enters)
+/// Visits the cells joined through faces to those given, of those that `enters` lets in, a run of cells along x at a time (Smith 1979,
+/// "Tint Fill"); `enters` has to mark what it lets in.
+/// @param from  cells that are marked
+template <class Enters> void flood(const DistanceField& field, std::span<const uint32_t> from, const Enters& enters)
 {
+    struct Run
+    {
+        uint32_t first, count;
+    };
+    const auto row = uint32_t(field.size.x), layer = row * uint32_t(field.size.y);
+    // A cell that was let in, `before` cells after its row's first, with all that follow it and that it follows.
+    const auto runOf = [&](uint32_t at, uint32_t before)
+    {
+        uint32_t first = at, end = at + 1;
+        while (at - first < before && enters(first - 1)) --first;
+        while (before + (end - at) < row && enters(end)) ++end;
+        return Run{first, end - first};
+    };
+    std::vector<Run> open;
+    for (const uint32_t at : from) open.push_back(runOf(at, uint32_t(field.cell(at).x)));
     while (!open.empty())
     {
-        const size_t at = open.back();
+        const Run run = open.back();
         open.pop_back();
-        forNeighbours(field, at,
-                      [&](size_t next)
-                      {
-                          if (enters(next)) open.push_back(uint32_t(next));
-                      });
+        const glm::ivec3 cell = field.cell(run.first);
+        const auto visit = [&](uint32_t beside)
+        {
+            for (uint32_t at = beside; at < beside + run.count; ++at)
+            {
+                if (!enters(at)) continue;
+                open.push_back(runOf(at, uint32_t(cell.x) + at - beside));
+                at = open.back().first + open.back().count; // which was not let in
+            }
+        };
+        if (cell.y > 0) visit(run.first - row);
+        if (cell.y + 1 < field.size.y) visit(run.first + row);
+        if (cell.z > 0) visit(run.first - layer);
+        if (cell.z + 1 < field.size.z) visit(run.first + layer);
     }
 }
 
@@ -130,15 +156,14 @@ Regions joinFreeCells(const DistanceField& field)
     const float blocked = kBlocked * field.voxel;
     Regions regions;
     regions.of.assign(field.cells(), kNoRegion);
-    std::vector<uint32_t> open;
     for (size_t first = 0; first < field.cells(); ++first)
     {
         if (regions.of[first] != kNoRegion || field.distance[first] <= blocked) continue;
         const uint32_t region = uint32_t(regions.volume.size());
         size_t volume = 1;
         regions.of[first] = region;
-        open.assign(1, uint32_t(first));
-        flood(field, open,
+        const auto seed = uint32_t(first);
+        flood(field, std::span(&seed, 1),
               [&](size_t at)
               {
                   if (regions.of[at] != kNoRegion || field.distance[at] <= blocked) return false;
@@ -300,14 +325,23 @@ void finish(FreeSpace& space)
 {
     const DistanceField& field = space.field;
     space.cells.clear();
+    space.cells.reserve(size_t(std::count(space.reachable.begin(), space.reachable.end(), uint8_t(1))));
+    glm::ivec3 low = field.size, high(-1);
+    uint32_t at = 0;
+    for (int z = 0; z < field.size.z; ++z)
+        for (int y = 0; y < field.size.y; ++y)
+            for (int x = 0; x < field.size.x; ++x, ++at)
+            {
+                if (!space.reachable[at]) continue;
+                space.cells.push_back(at);
+                low = glm::min(low, glm::ivec3(x, y, z));
+                high = glm::max(high, glm::ivec3(x, y, z));
+            }
     space.bounds = {};
-    for (size_t at = 0; at < field.cells(); ++at)
+    if (!space.cells.empty())
     {
-        if (!space.reachable[at]) continue;
-        space.cells.push_back(uint32_t(at));
-        const vec3 centre = field.centre(field.cell(at));
-        space.bounds.add(centre - 0.5f * field.voxel);
-        space.bounds.add(centre + 0.5f * field.voxel);
+        space.bounds.add(field.centre(low) - 0.5f * field.voxel);
+        space.bounds.add(field.centre(high) + 0.5f * field.voxel);
     }
     space.volume = double(space.cells.size()) * std::pow(double(field.voxel), 3.0);
 }
@@ -359,9 +393,8 @@ void keepPassable(const DistanceField& field, std::vector<uint8_t>& reached, con
     constexpr uint8_t kPassed = 2;
     std::vector<uint32_t> open, around;
     for (uint32_t at : seeds)
-        if (reached[at] == 1 && field.distance[at] >= radius) reached[at] = kPassed, open.push_back(at);
-    around = open;
-    flood(field, open,
+        if (reached[at] == 1 && field.distance[at] >= radius) reached[at] = kPassed, around.push_back(at);
+    flood(field, std::vector(around),
           [&](size_t at)
           {
               if (reached[at] != 1 || field.distance[at] < radius) return false;
