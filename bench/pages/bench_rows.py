@@ -13,6 +13,7 @@
     bench/pages/primary_table.sh                                bench/results/primary_rays.json
     bench/pages/paths_table.sh                                  bench/results/field_paths.json
     bench/pages/day_sheet.sh                                    bench/results/day.json
+    bench/pages/gallery.sh                                      bench/results/gallery.json
     bench/pages/stream_table.sh                                 bench/results/streaming.json
     bench/pages/sparse_table.sh                                 bench/results/edges_and_points.json and cached_frames.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
@@ -628,6 +629,14 @@ def day(arguments):
           ["256x144, 192 paths a pixel of up to 16 bounces, pixels in which both see the same surface; mean: over the reference's"], rows)
 
 
+def gallery(arguments):
+    """Of the lines that gallery.sh prints."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("gallery.json", "Whole pictures of scenes against the path tracer: ours with every default but the ones named", ["bench/pages/gallery.sh"],
+          ["1280x720, 16 frames blended over time, maps of 256 texels a face; reference: 128 paths a pixel of up to 16 bounces, through the pixel's centre; "
+           "pixels in which both see the same surface; mean: over the reference's; truths_own: relMSE of the reference by its noise, of indirect light"], rows)
+
+
 def least_and_most(texts):
     numbers = sorted((float(text), text) for text in texts if text != "nan")
     return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
@@ -635,7 +644,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "fly": fly, "flights": flights}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "gallery": gallery, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])

@@ -140,7 +140,7 @@ class Tables(unittest.TestCase):
                           "findings.json:1: row ")
 
     def test_too_many_bytes(self):
-        self.change("docs/notebook.md", r"\Z", "\n" + "More was tried than can be told here. " * 200)
+        self.change("docs/limits.md", r"\Z", "\n" + "There is more that can't be told here. " * 200)
         self.expect_fault("docs:0: the pages have", "60000 are allowed")
 
     def test_writing_mends_tables_and_figures(self):
