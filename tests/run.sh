@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The whole test suite: installs what is missing, builds, runs. tests/run.sh [ctest options, e.g. -R Field: suites of that name]; PRESET=debug for
-# sanitizers. One test of a suite: build/release/tests/FOLDER/sconce_FOLDER_tests --gtest_filter=SUITE.TEST.
+# sanitizers. One test of a suite: its program, in build/release/tests, with --gtest_filter=SUITE.TEST.
 # Fails, too, where a test was skipped that tests/may_skip.txt doesn't name.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -201,7 +201,8 @@ TEST_F(MovingShapeFrames, ManyShapesAreDrawnAndFinite)
             shape(MovingShape::Kind(i % 3), {-1.8f + 0.24f * float(i % 16), 0.1f, -1.8f + 0.24f * float(i / 16)}, vec3(0.08f), float(i)));
     Scene crowded = room();
     addShapes(crowded, many);
-    RenderSettings few = settingsOf(32);
+    RenderSettings few = settings();
+    few.width = few.height = 32;
     few.shapes = many;
     const auto frame = drawWith(field, crowded, few);
     ASSERT_TRUE(frame) << frame.error().message;
