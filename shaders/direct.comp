@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#define SCONCE_SUN_LEVELS int(lightsHeader.sunLevels)
 #include "lights.glsl"
 #include "gbuffer_read.glsl"
 #include "shared/chart.h"

@@ -1,10 +1,14 @@
-// Direct light from the list of lights, shadowed by their maps. Points and normals in field space.
+// Direct light from the list of lights, shadowed by their maps. Points and normals in field space. Define SCONCE_SUN_LEVELS to how many maps of a
+// directional light are read (1 when undefined: that of the whole scene).
 #ifndef SCONCE_LIGHTS_GLSL
 #define SCONCE_LIGHTS_GLSL
 #include "scene.glsl"
 #include "shared/brdf.h"
 #include "shared/delta_light.h"
 #include "shared/chart.h"
+#ifndef SCONCE_SUN_LEVELS
+#define SCONCE_SUN_LEVELS 1
+#endif
 
 struct LightSample
 {
@@ -34,6 +38,7 @@ LightSample unshadowedLight(uint kind, uint i, vec3 p)
 }
 
 const float kSteepest = 0.05; // cosine to the light below which a plane counts as no steeper
+const float kWithinFiner = 0.495; // of a finer map's width to either side of its middle
 const float kPlaneSlack = 0.1; // texels, along a plane and towards the light, that its depth may be off by
 
 /// Of a directional light: each of the map's four texels about the point is compared with the depth that the receiver's own plane has there
@@ -43,17 +48,31 @@ float sunVisibility(GpuLight light, vec3 p, vec3 normal)
 {
     vec4 q = vec4(p, 1.0);
     vec3 at = vec3(dot(light.shadowX, q), dot(light.shadowY, q), dot(light.shadowDepth, q));
-    vec3 x = light.shadowX.xyz, y = light.shadowY.xyz, depth = light.shadowDepth.xyz;
+    // The finest map whose filter lies in it all.
+    vec4 eye = vec4(lightsHeader.eye, 1.0);
+    vec2 off = at.xy - vec2(dot(light.shadowX, eye), dot(light.shadowY, eye));
+    float finer = 1.0, finest = 1.0;
+    int level = 0;
+    for (int l = 1; l < SCONCE_SUN_LEVELS; ++l)
+    {
+        finer *= kFinerSun;
+        vec2 within = abs(off * finer);
+        if (max(within.x, within.y) > kWithinFiner) break;
+        level = l;
+        finest = finer;
+    }
+    if (level > 0) at.xy = off * finest + 0.5;
+    vec3 x = finest * light.shadowX.xyz, y = finest * light.shadowY.xyz, depth = light.shadowDepth.xyz;
     float deep = length(depth), facing = max(dot(depth, normal) / deep, kSteepest);
     vec2 slope = -vec2(dot(x, normal) / dot(x, x), dot(y, normal) / dot(y, y)) * (deep / facing); // depth over map
     vec2 size = vec2(textureSize(sconceSunShadows, 0).xy);
-    float slack = 1e-6 + kPlaneSlack * (dot(abs(slope), 1.0 / size) + deep * light.shadowTexel);
+    float slack = 1e-6 + kPlaneSlack * (dot(abs(slope), 1.0 / size) + deep * light.shadowTexel / finest);
     vec2 low = floor(at.xy * size - 0.5), f = at.xy * size - 0.5 - low;
     float lit[4];
     for (int tap = 0; tap < 4; ++tap)
     {
         vec2 texel = (low + vec2(tap & 1, tap >> 1) + 0.5) / size;
-        lit[tap] = texture(sconceSunShadows, vec4(texel, float(light.shadowLayer), at.z + dot(slope, texel - at.xy) + slack));
+        lit[tap] = texture(sconceSunShadows, vec4(texel, float(light.shadowLayer + level), at.z + dot(slope, texel - at.xy) + slack));
     }
     return mix(mix(lit[0], lit[1], f.x), mix(lit[2], lit[3], f.x), f.y);
 }

@@ -99,7 +99,7 @@ Status draw(const ExplainOptions& options, Scene scene, const FieldData& data, c
     settings.effects = plan->indirect();
     const auto field = makeLightField(**gpu, data);
     if (!field) return field.error();
-    const auto uploaded = DeviceScene::create(**gpu, scene, field->info(), sceneForFrames(settings.effects, field->info()), {});
+    const auto uploaded = DeviceScene::create(**gpu, scene, field->info(), sceneForFrames(settings.effects, field->info(), camera.eye), {});
     if (!uploaded) return uploaded.error();
     const auto renderer = SceneRenderer::create(**gpu, *uploaded, *field, settings);
     if (!renderer) return renderer.error();

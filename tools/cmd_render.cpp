@@ -140,7 +140,7 @@ Result<Drawn> drawFrames(Gpu& gpu, const Scene& scene, const LightField& field, 
     const Error interrupted{ErrorCode::cancelled, "Interrupted; nothing was written."};
     // After the effects are settled: frames that take no samples of emitters and sky need no shadow maps of them.
     const auto deviceScene =
-        DeviceScene::create(gpu, scene, field.info(), sceneForFrames(settings.effects, field.info()), consoleProgress(context));
+        DeviceScene::create(gpu, scene, field.info(), sceneForFrames(settings.effects, field.info(), camera.eye), consoleProgress(context));
     if (!deviceScene) return deviceScene.error();
     const auto renderer = SceneRenderer::create(gpu, *deviceScene, field, settings);
     if (!renderer) return renderer.error();

@@ -22,8 +22,10 @@ constexpr uint32_t kPlacesOfKey = 8;   // that are gathered at
 constexpr uint32_t kTried = 32;        // that are asked, to find them
 constexpr uint32_t kTriedStep = 13;    // from one to the next: coprime to them, so that all have their turn, and the first lie far apart
 constexpr uint32_t kRaysOfPlace = 8;
-constexpr float kLeastOpen = 1e-3f;       // weight of a place
-constexpr float kTight = 0.5f;            // of a voxel: what is no further from what is about it may be sealed up
+constexpr uint32_t kRaysOfTried = 16;
+constexpr float kTight = 0.5f;            // of a voxel: farther than this a ray goes far
+constexpr float kWholly = 4.0f;           // times as much of what probes see before a place makes it count wholly
+constexpr float kOpen = 0.5f;             // share of rays that must, of a place in a space of its own
 constexpr size_t kMostKeysOfProbe = 1024; // voxels are larger where there were more
 constexpr double kMostKeys = 2147483648.0;
 constexpr uint64_t kHiddenStream = 19; // of random numbers
@@ -96,7 +98,7 @@ std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& tria
                             if (outside[triangle] != Outside::both && outside[triangle] != side) continue;
                             const vec3 normal = glm::normalize(float(side) * across), point = on + triangles.offset() * normal;
                             if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal))
-                                found[triangle].push_back({0, point, normal, triangles.grazingOf(look.metallic, look.roughness)});
+                                found[triangle].push_back({0, point, normal, triangles.grazingOf(look.metallic, look.roughness), 0.0f});
                         }
                     }
                 });
@@ -153,26 +155,26 @@ void arrange(HiddenPlaces& of, std::span<const uint32_t> order, std::span<const 
     of.places = std::move(arranged);
 }
 
-/// Mean light at some places of one key, by how open they are, since what lies between a floor and the ground that goes on below it nobody
-/// sees; 0 where what sees them no probe sees either, unless they are enclosed: the far side of an outer wall.
+/// Mean light at some places of one key; 0 where what sees them no probe sees either, unless they are enclosed: the far
+/// side of an outer wall.
 /// @param side  of its voxel, field units
 uint32_t lightOf(std::span<const Place> places, float side, Text& text, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
     vec3 sum(0.0f);
     float weights = 0.0f;
-    bool meets = false, enclosed = true;
+    bool seen = false, enclosed = true;
     for (uint32_t i = 0; i < places.size(); ++i)
     {
         const Place& place = places[i];
-        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
+        // By other rays than those that told its weight: the same would favour what happens to be bright.
+        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent, kTight * side);
         if (!got.known) continue;
-        const float weight = std::clamp(got.room / side, kLeastOpen, 1.0f);
-        sum += weight * (got.straight + got.bounced);
-        weights += weight;
-        meets = meets || got.meetsSeen;
+        sum += place.weight * (got.straight + got.bounced);
+        weights += place.weight;
+        seen = seen || got.seen > 0.0f;
         enclosed = enclosed && got.enclosed;
     }
-    return weights > 0.0f && (meets || enclosed) ? text.packKnownLight(sum / weights) : 0;
+    return weights > 0.0f && (seen || enclosed) ? text.packKnownLight(sum / weights) : 0;
 }
 
 /// Whether a place would be lit by what is known beside hidden surfaces: that of the open, which may be beyond a wall.
@@ -214,8 +216,9 @@ std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const ui
     }
 }
 
-/// Of one key's places at most kPlacesOfKey: of some all over the voxel those that are open, or whose rays meet what a probe sees, since
-/// nobody looks at what is sealed up behind them, in a moulding or between two layers of a wall; where there is none, any.
+/// Of one key's places, of some all over the voxel, at most kPlacesOfKey: those before which something lies that a probe sees, and those in
+/// spaces of their own, as a dark room beside a lit one. Nobody looks at what is sealed up, in a moulding or between two layers of a wall,
+/// or within what stands in one another.
 /// @param side  of the voxel, field units
 std::vector<Place> chosenOf(std::span<const Place> places, float side, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
@@ -226,11 +229,12 @@ std::vector<Place> chosenOf(std::span<const Place> places, float side, const Tri
         const uint32_t i = (turn * kTriedStep) % kTried; // far from those before it
         if (i >= tried) continue;
         const Place& place = places[i * places.size() / tried];
-        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
-        if (got.known && (got.meetsSeen || got.room > kTight * side)) chosen.push_back(place);
+        const auto got =
+            triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfTried, {place.key, kPlacesOfKey + i}, sent, kTight * side);
+        if (!got.known || !(got.seen > 0.0f || got.open > kOpen)) continue;
+        chosen.push_back(place);
+        chosen.back().weight = got.open > kOpen ? 1.0f : std::min(kWholly * got.seen, 1.0f);
     }
-    const size_t any = chosen.empty() ? std::min<size_t>(places.size(), kPlacesOfKey) : 0;
-    for (size_t i = 0; i < any; ++i) chosen.push_back(places[i * places.size() / any]);
     return chosen;
 }
 
@@ -245,10 +249,12 @@ void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& 
                     chosen[i] = chosenOf(std::span(of.places).subspan(first, end - first), side, triangles, sent);
                 });
     of.places.clear();
-    for (size_t i = 0; i < chosen.size(); ++i)
+    of.keys.clear();
+    for (const std::vector<Place>& some : chosen)
     {
-        of.keys[i] = {of.places.size(), of.places.size() + chosen[i].size()};
-        of.places.insert(of.places.end(), chosen[i].begin(), chosen[i].end());
+        if (some.empty()) continue;
+        of.keys.emplace_back(of.places.size(), of.places.size() + some.size());
+        of.places.insert(of.places.end(), some.begin(), some.end());
     }
 }
 
@@ -342,12 +348,16 @@ std::vector<HiddenLinks> hiddenLinks(const FieldData& lit, const HiddenPlaces& o
                     size_t slot = Text::hiddenSlot(key, uint32_t(slots));
                     while (lit.surfaceLight[table + 2 * slot] != key) slot = (slot + 1) % slots;
                     all[i].word = uint32_t(table + 2 * slot + 1);
-                    const uint32_t asked = uint32_t(std::min<size_t>({end - first, kPlacesOfKey, count}));
-                    for (uint32_t k = 0; k < asked; ++k)
+                    float total = 0.0f, passed = 0.0f;
+                    for (size_t k = first; k < end; ++k) total += of.places[k].weight;
+                    for (size_t k = first; k < end; ++k)
                     {
-                        const Place& place = of.places[first + k * (end - first) / asked];
-                        const uint32_t own = count * (k + 1) / asked - count * k / asked;
-                        const auto links = triangles.linksAt(place.point, place.normal, place.grazing, own, glm::uvec2(key, k));
+                        const Place& place = of.places[k];
+                        const auto before = uint32_t(float(count) * passed / total);
+                        passed += place.weight;
+                        const uint32_t own = (k + 1 == end ? count : uint32_t(float(count) * passed / total)) - before;
+                        if (own == 0) continue;
+                        const auto links = triangles.linksAt(place.point, place.normal, place.grazing, own, glm::uvec2(key, k - first));
                         all[i].links.insert(all[i].links.end(), links.begin(), links.end());
                     }
                 });

@@ -17,6 +17,7 @@ struct HiddenPlaces
         vec3 point;   // field space
         vec3 normal;
         float grazing; // TriangleGather::grazingOf()
+        float weight;  // of its light
     };
     uint32_t shift = 0;                          // log2 of finest voxels a side
     std::vector<Place> places;                   // by key
@@ -26,9 +27,9 @@ struct HiddenPlaces
 /// Gathers light, by exact rays, at surfaces that no texel of a field's surface light shows: undersides, gaps, what stands behind things; a
 /// mean for each voxel and facing (shaders/shared/hidden_light.h). Points are drawn evenly over the scene's surface, on each side that can
 /// be seen from outside; where nothing arrives, that is kept only where a look-up would find light without, as in a dark room beside a lit
-/// one; of a voxel's those count that are open, or from which what a probe sees is met, not what is sealed up behind them. Afterwards the
-/// field's info.hidden and surfaceLight hold them. Cost: a look-up for each of up to some millions of points, and for each voxel and
-/// facing 64 rays for the light, and 64 to 256 for where to gather it.
+/// one; of a voxel's each counts that is open, those in a gap by how much of what probes see lies before them, what is sealed up or within
+/// something solid not at all. Afterwards the field's info.hidden and surfaceLight hold them. Cost: a look-up for each of up to some
+/// millions of points, and for each voxel and facing 64 rays for the light, and 64 to 256 for where to gather it.
 /// @param lit   with surface light, without refined texels
 /// @param sent  by each texel
 /// @param places  where light was gathered before, of the same surfaces in other light, which then is where it is; null, or empty: found,

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <ranges>
+#include <utility>
 
 #include "base/numbers.h"
 #include "base/parallel.h"
@@ -56,6 +57,8 @@ struct Gatherer : LightFieldTwin<float>
     size_t slot = 0;                                      // of the texel in it
     std::vector<float> running;                           // sums of the emitters' weights, up to each and with it
     std::array<vec3, gpu::kReflectionsCounted> brought{}; // light of emitters and sky that the rays have brought by reflections, summed
+    float met = 0.0f;                                     // length of the last ray to what it met first; kBack, kSeen
+    std::span<float> lengths;                             // of each ray, like `met`; empty: not asked for
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
              std::span<const glm::vec4> tints, std::span<const float> ofMaterials, const EmitterPatches& ofEmitters,
@@ -80,6 +83,7 @@ struct Gatherer : LightFieldTwin<float>
     void keepLink(uint i, uint link)
     {
         links[size_t(i) * (links.size() / desc.rays) + slot] = link;
+        if (!lengths.empty()) lengths[i] = std::exchange(met, 0.0f);
     }
 
     bool emitterReaches(vec3 point, vec3 toLight, float distance_, vec3) const
@@ -100,6 +104,7 @@ struct Gatherer : LightFieldTwin<float>
         {
             const auto hit = triangles.closest(from, direction);
             if (turn == 0 && hit) t = hit->t / field.scale;
+            if (turn == 0) met = hit && dot(geometricNormal(triangles.scene(), hit->triangle), direction) > 0.0f ? kBack : t;
             if (!hit && turn == 0) return kLinkSky;
             if (!hit)
             {
@@ -130,6 +135,7 @@ struct Gatherer : LightFieldTwin<float>
                 continue;
             }
             const uint found = texelAt((place.position - field.origin) / field.scale, place.normal, random.uniform());
+            if (found != kLinkSurface && turn == 0) met = kSeen;
             if (found != kLinkSurface) return found | nearestTint(tint, turn) << kLinkTexelBits;
             // No probe sees the place: there the ray is scattered itself.
             const vec3 scattered = scatteredBy(place.surface);
@@ -449,20 +455,34 @@ struct Gatherer : LightFieldTwin<float>
     }
 
     static constexpr float kOffWall = 0.75f; // voxels: nearer to its own wall a probe behind that may seem to see a point
-    /// Whether some of a place's rays end at a texel, or pass through the open before a probe on their way to the sky.
-    bool meetsSeen(vec3 point, vec3 normal, uvec2 sample, std::span<const uint32_t> ends, float grazing)
+    /// TriangleGather::Point::seen.
+    float seenShare(vec3 point, vec3 normal, uvec2 sample, std::span<const uint32_t> ends, float grazing)
     {
         const TangentFrame tangents = tangentFrame(normal);
+        uint seen = 0;
         for (uint i = 0; i < ends.size(); ++i)
-        {
-            if (ends[i] < kLinkDark) return true;
-            if (ends[i] != kLinkSky) continue;
-            const vec3 direction = gatherDirection(tangents, sample, i, grazing);
-            for (const float voxels : {2.0f, 6.0f})
-                if (voxels * dot(direction, normal) > kOffWall && isSeen(point + voxels * field.voxel * direction)) return true;
-        }
+            seen +=
+                lengths[i] == kSeen || (ends[i] == kLinkSky && passesSeen(point, normal, gatherDirection(tangents, sample, i, grazing)));
+        return float(seen) / float(ends.size());
+    }
+    bool passesSeen(vec3 point, vec3 normal, vec3 direction)
+    {
+        for (const float voxels : {2.0f, 6.0f})
+            if (voxels * dot(direction, normal) > kOffWall && isSeen(point + voxels * field.voxel * direction)) return true;
         return false;
     }
+
+    static constexpr float kBack = -1.0f, kSeen = 2.0f * kFar; // in place of a length: to the back of a triangle, to what a probe sees
+    /// TriangleGather::Point::open.
+    float openShare(float near) const
+    {
+        const auto all = float(lengths.size());
+        if (float(std::ranges::count(lengths, kBack)) > kMostBacks * all) return 0.0f;
+        return float(std::ranges::count_if(lengths, [&](float to) { return to > near; })) / all;
+    }
+
+    static constexpr float kMostBacks =
+        0.125f; // of rays, of a place that is not within something solid; what stands in one another has fronts within, too
 
     bool isSeen(vec3 point)
     {
@@ -657,19 +677,21 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
         const auto got = text.gatherAt(point, normal, exact->normal, text.pixelOfTexel(at),
                                        grazingOf(exact->surface.metallic, exact->surface.roughness));
         if (text.knowsTooLittle(got.ends, got.asked)) continue;
-        found[i] = {got.light, text.broughtTo(links, sent) + text.allBrought(got.ends), got.variance, got.room, got.reach, true, true,
+        found[i] = {got.light, text.broughtTo(links, sent) + text.allBrought(got.ends), got.variance, got.room, got.reach, true, 1.0f, 1.0f,
                     false};
     }
     return found;
 }
 
-TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample,
-                                               const Sent& sent) const
+TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent,
+                                               float near) const
 {
     std::vector<uint32_t> links(rays);
+    std::vector<float> lengths(rays);
     Desc fewer = desc;
     fewer.rays = rays;
     twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, patches, links);
+    text.lengths = lengths;
     const auto got = text.gatherAt(point, normal, normal, sample, grazing);
     return {got.light,
             text.broughtTo(links, sent) + text.allBrought(got.ends),
@@ -677,7 +699,8 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
             got.room,
             got.reach,
             !text.knowsTooLittle(got.ends, got.asked),
-            text.meetsSeen(point, normal, sample, links, grazing),
+            text.seenShare(point, normal, sample, links, grazing),
+            text.openShare(near),
             std::ranges::find(links, gpu::kLinkSky) == links.end()};
 }
 

@@ -68,7 +68,8 @@ public:
         float variance = 0.0f;              // of the luminance of `straight`, by chance
         float room = 0.0f, reach = 0.0f;    // harmonic mean of the lengths of its rays, of those that end at a surface; field units
         bool known = false;                 // enough of its rays found something
-        bool meetsSeen = false;             // some of them a place that a probe sees
+        float seen = 0.0f;                  // share of them that meet what a probe sees, or pass before one on their way to the sky
+        float open = 0.0f;                  // share of them that go far, of a place that isn't within something solid: see gatherAt()
         bool enclosed = false;              // none of them the sky
     };
     /// At what the 2^kFineLog squared finer texels of a texel see.
@@ -81,7 +82,8 @@ public:
     /// @param normal   unit, on the side that is lit
     /// @param grazing  of its surface, see grazingOf()
     /// @param rays    at most Desc's
-    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent) const;
+    /// @param near    field units, beyond which a ray goes far
+    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent, float near) const;
     /// Where the rays of such a place end.
     std::vector<uint32_t> linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const;
     /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in

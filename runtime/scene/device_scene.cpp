@@ -1,8 +1,10 @@
 #include "runtime/scene/device_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <tuple>
 
@@ -18,6 +20,8 @@ namespace sconce
 
 namespace
 {
+
+constexpr float kNearBorder = 0.25f; // of the width of the finest map about an eye: as far as the eye may go from its middle
 
 std::string settingsFault(const DeviceSceneDesc& desc)
 {
@@ -124,12 +128,15 @@ struct MapKind
     const char* what;
 };
 
-/// New images: nothing used them. Each layer is cleared where it is drawn.
-void toAttachment(Gpu& gpu, VkCommandBuffer cmd, const GpuImage& maps)
+/// Each layer is cleared where it is drawn.
+/// @param sampled  whether frames have read them, as all commands may; of new images nothing is to be waited for
+void toAttachment(Gpu& gpu, VkCommandBuffer cmd, const GpuImage& maps, bool sampled)
 {
     transition(gpu, cmd, maps,
-               {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_NONE,
-                VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, 0,
+               {sampled ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                sampled ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_NONE,
+                VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                sampled ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT : VkAccessFlags2(0),
                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT});
 }
 
@@ -170,7 +177,7 @@ Status drawMaps(Gpu& gpu, const LightList& lights, const SceneMesh& triangles, c
                                     : light.type == gpu::kLightEmitter   ? 3
                                                                          : 2];
         const DepthPipelines& pipeline = pipelines[kind.format == kFormats[0] ? 0 : 1];
-        const std::vector<gpu::SceneView> views = shadowViews(light, lights.header.pointNear);
+        const std::vector<gpu::SceneView> views = shadowViews(light, lights.header);
         auto status = gpu.submit(
             [&](VkCommandBuffer cmd)
             {
@@ -184,9 +191,10 @@ Status drawMaps(Gpu& gpu, const LightList& lights, const SceneMesh& triangles, c
 
 } // namespace
 
-DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field)
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field, std::optional<vec3> eye)
 {
     DeviceSceneDesc desc;
+    desc.light.eye = eye;
     if (!effects.diffuse || effects.tracedDiffuse || readsSurfaceLight(effects, field))
         desc.light.emitterSamples = desc.light.skySamples = 0;
     else if (effects.fieldShadows)
@@ -225,6 +233,8 @@ Result<DeviceScene> DeviceScene::create(Gpu& gpu, const Scene& scene, const gpu:
     if (light.areaShadows)
         light.emitterSamples = std::min(light.emitterSamples, most / 6), light.skySamples = std::min(light.skySamples, most);
     made.lightList = buildLightList(scene, space, light);
+    made.origin = space.origin;
+    made.scale = space.scale;
     // Room for one light at least: the array behind the header is bound even when it is empty.
     std::vector<std::byte> list(sizeof(gpu::LightsHeader) + std::max<size_t>(made.lightList.lights.size(), 1) * sizeof(gpu::GpuLight));
     std::memcpy(list.data(), &made.lightList.header, sizeof(gpu::LightsHeader));
@@ -321,7 +331,8 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
     };
     // All layers at once and before any draw: the draws are submits of their own, and a transition from undefined drops what an image
     // holds.
-    if (auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toAttachment); }); !status) return status;
+    const auto toDraw = [](Gpu& on, VkCommandBuffer cmd, const GpuImage& maps) { toAttachment(on, cmd, maps, false); };
+    if (auto status = gpu.submit([&](VkCommandBuffer cmd) { everyMap(cmd, toDraw); }); !status) return status;
     if (auto status = drawMaps(gpu, lightList, triangles, set, kinds, progress); !status) return status;
     return gpu.submit(
         [&](VkCommandBuffer cmd)
@@ -329,6 +340,37 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
             everyMap(cmd, toSampled);
             for (const MapKind& kind : kinds)
                 if (kind.maps) scanImage(gpu, cmd, "shadow maps", kind.maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        });
+}
+
+Status DeviceScene::lookFrom(Gpu& gpu, vec3 eye)
+{
+    gpu::LightsHeader& header = lightList.header;
+    if (header.sunLevels <= 1) return success();
+    const vec3 at = (eye - origin) / scale;
+    float finest = std::numeric_limits<float>::infinity(); // width of a map, field units
+    for (const gpu::GpuLight& light : lightList.lights)
+        if (light.type == gpu::kLightDirectional)
+            finest = std::min(finest, light.shadowTexel * float(lightList.settings.sunShadow) /
+                                          std::pow(gpu::kFinerSun, float(header.sunLevels - 1)));
+    if (glm::distance(at, header.eye) < kNearBorder * finest) return success();
+    header.eye = at;
+    if (auto status = gpu.upload(lightBuffer, 0, std::as_bytes(std::span(&header, 1))); !status) return status;
+    const auto pipelines = DepthPipelines::create(gpu, set.layout(), sunMaps.desc().format, triangles.hasMasked());
+    if (!pipelines) return pipelines.error();
+    SceneDraws draws;
+    return gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            toAttachment(gpu, cmd, sunMaps, true);
+            for (const gpu::GpuLight& light : lightList.lights)
+            {
+                if (light.type != gpu::kLightDirectional) continue;
+                const std::vector<gpu::SceneView> views = shadowViews(light, header);
+                for (uint32_t v = 1; v < views.size(); ++v) // the first is the whole scene's
+                    renderDepth(gpu, cmd, *pipelines, triangles, set.handle(), sunMaps, uint32_t(light.shadowLayer) + v, views[v], draws);
+            }
+            toSampled(gpu, cmd, sunMaps);
         });
 }
 

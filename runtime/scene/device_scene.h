@@ -24,10 +24,11 @@ inline constexpr uint32_t kTracedLightSamples =
 
 /// What frames with these effects need of a scene: without diffuse light, or where rays or surface light give it, no samples of emitters
 /// and sky, and so no shadow maps of them; with `fieldShadows` more samples, without maps. A bake needs them always.
-DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field);
+/// @param eye  metres, see LightSettings::eye
+DeviceSceneDesc sceneForFrames(const IndirectEffects& effects, const gpu::LightFieldInfo& field, std::optional<vec3> eye = {});
 
-/// A scene on the device: triangles, materials, textures, lights, and shadow maps rendered once. Move-only; destroy it after the GPU has
-/// finished with it and before its Gpu.
+/// A scene on the device: triangles, materials, textures, lights, and shadow maps, rendered once but for those about an eye. Move-only;
+/// destroy it after the GPU has finished with it and before its Gpu.
 class DeviceScene
 {
 public:
@@ -35,6 +36,10 @@ public:
     /// Errors: badInput (an empty or invalid scene: names the fault), badArgument (settings), outOfMemory, deviceFailure, cancelled.
     static Result<DeviceScene> create(Gpu& gpu, const Scene& scene, const gpu::LightFieldInfo& space, const DeviceSceneDesc& desc = {},
                                       const Progress& progress = {});
+
+    /// After an eye that has moved: where it is near the border of the finest maps about it (LightSettings::eye), these are drawn anew
+    /// about it (submits and waits). Nothing to do for a scene without. Errors: deviceFailure, outOfMemory.
+    Status lookFrom(Gpu& gpu, vec3 eye);
 
     /// What shaders/scene.glsl declares; sampled by fragment and compute shaders.
     VkDescriptorSetLayout layout() const { return set.layout(); }
@@ -50,6 +55,8 @@ private:
     TextureArray color, data;
     Buffer materials, lightBuffer;
     LightList lightList;
+    vec3 origin{0.0f}; // of field space, metres
+    float scale = 1.0f;
     GpuImage sunMaps, skyMaps, pointMaps, emitterMaps, noMaps;
     Sampler textureSampler, smoothCompare, nearestCompare;
     DescriptorSet set;

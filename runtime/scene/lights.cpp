@@ -151,6 +151,34 @@ void addSky(const Scene& scene, uint32_t count, LightList& list)
     }
 }
 
+/// How many maps a directional light has, so that the finest one's texels are no wider than some.
+/// @param texel  of the map of the whole scene, metres
+uint32_t sunLevels(float texel)
+{
+    constexpr float kFineTexel = 0.004f; // metres: a pixel of 1280 across 60 degrees, at 4 m
+    constexpr uint32_t kMostLevels = 3;
+    uint32_t levels = 1;
+    for (; levels < kMostLevels && texel > kFineTexel; ++levels) texel /= gpu::kFinerSun;
+    return levels;
+}
+
+/// Gives directional lights maps about the eye.
+void addFinerSuns(const gpu::LightFieldInfo& space, const LightSettings& settings, LightList& list)
+{
+    float texel = 0.0f;
+    for (gpu::GpuLight light : list.lights)
+    {
+        if (light.type != gpu::kLightDirectional) continue;
+        fitDirectional(light, space, settings.sunShadow);
+        texel = std::max(texel, light.shadowTexel * space.scale);
+    }
+    list.header.sunLevels = sunLevels(texel);
+    list.header.eye = (*settings.eye - space.origin) / space.scale;
+    list.sunLayers *= list.header.sunLevels;
+    for (gpu::GpuLight& light : list.lights)
+        if (light.type == gpu::kLightDirectional) light.shadowLayer *= int(list.header.sunLevels);
+}
+
 /// Gives the emitters' and the sky's entries their layers.
 void addAreaShadows(LightList& list)
 {
@@ -186,7 +214,9 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
 {
     LightList list;
     list.header.pointNear = 1e-4f * space.diagonal;
+    list.header.sunLevels = 1;
     addDelta(scene, space, list);
+    if (settings.eye) addFinerSuns(space, settings, list);
     addEmitters(scene, space, settings.emitterSamples, settings.lamps, list);
     addSky(scene, settings.skySamples, list);
     if (settings.areaShadows) addAreaShadows(list);
@@ -222,15 +252,26 @@ gpu::SceneView faceView(vec3 centre, int face, float nearPlane)
     return {glm::transpose(rows), centre};
 }
 
-std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, float pointNear)
+std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, const gpu::LightsHeader& header)
 {
-    if (light.type == gpu::kLightDirectional || light.type == gpu::kLightSky)
-    {
-        const vec4 one(0.0f, 0.0f, 0.0f, 1.0f);
-        return {{glm::transpose(mat4(2.0f * light.shadowX - one, 2.0f * light.shadowY - one, light.shadowDepth, one)), vec3(0.0f)}};
-    }
     std::vector<gpu::SceneView> views;
-    for (int face = 0; face < 6; ++face) views.push_back(faceView(light.position, face, pointNear));
+    if (light.type != gpu::kLightDirectional && light.type != gpu::kLightSky)
+    {
+        for (int face = 0; face < 6; ++face) views.push_back(faceView(light.position, face, header.pointNear));
+        return views;
+    }
+    const vec4 one(0.0f, 0.0f, 0.0f, 1.0f), eye(header.eye, 1.0f);
+    vec4 rows[2] = {light.shadowX, light.shadowY};
+    for (uint32_t level = 0; level < (light.type == gpu::kLightSky ? 1 : header.sunLevels); ++level)
+    {
+        if (level > 0)
+            for (vec4& row : rows)
+            {
+                row *= gpu::kFinerSun;
+                row.w += 0.5f - glm::dot(row, eye);
+            }
+        views.push_back({glm::transpose(mat4(2.0f * rows[0] - one, 2.0f * rows[1] - one, light.shadowDepth, one)), vec3(0.0f)});
+    }
     return views;
 }
 

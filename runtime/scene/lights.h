@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/knobs.h"
@@ -22,6 +23,7 @@ struct LightSettings
     uint32_t pointShadow = knobs::pointShadow.value;     // texels a side of a point light's six faces
     uint32_t emitterShadow = knobs::emitterShadow.value; // the same for emitter samples
     uint32_t skyShadow = knobs::skyShadow.value;         // texels a side of a sky direction's map
+    std::optional<vec3> eye;          // metres: directional lights have finer maps about it, too, where the scene is large
     std::vector<uint32_t> lamps = {}; // triangles, ascending, that are no emitters, though they shine: runtime/bake/lamps.h
 };
 
@@ -55,8 +57,8 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
 /// A light of no extent in a field's space, without a shadow map.
 gpu::GpuLight deltaLight(const Light& light, const gpu::LightFieldInfo& space);
 
-/// The views of an entry's shadow map: one for directional lights, six faces for the others.
-std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, float pointNear);
+/// The views of an entry's shadow maps, a layer each: one for the sky's, sunLevels for directional lights, six faces for the others.
+std::vector<gpu::SceneView> shadowViews(const gpu::GpuLight& light, const gpu::LightsHeader& header);
 
 /// A cube face about a point: clip = (U, V, near, W) with the face coordinates of shaders/shared/chart.h.
 gpu::SceneView faceView(vec3 centre, int face, float nearPlane);

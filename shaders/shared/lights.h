@@ -21,7 +21,7 @@ struct GpuLight
     float area;     // emitter: of the patch, field units squared
     float innerCone;   // of an emitter: 1: its back is inside of what is closed; 0: it is seen from both sides
     float outerCone;
-    int shadowLayer;   // first layer in the array of its kind: 1 (directional, sky) or 6 (the others)
+    int shadowLayer;   // first layer in the array of its kind: sunLevels (directional), 1 (sky) or 6 (the others)
     float shadowTexel; // directional, sky: field units a texel; the others: tangent a texel
     vec4 shadowX;      // directional, sky: dot(row, (p, 1)) is the map's x in [0,1], y, and depth, 1 nearest the light
     vec4 shadowY;
@@ -35,8 +35,12 @@ struct LightsHeader
     uint emitterCount;
     uint skyCount;
     float pointNear; // W of depth 1 in the maps of point-like lights, field units
+    vec3 eye;        // field space, that the finer maps of directional lights lie about
+    uint sunLevels;  // maps of a directional light: the whole scene's, then each of a kFinerSun-th of the width of the one before
 };
-SCONCE_CHECK_SIZE(LightsHeader, 16);
+SCONCE_CHECK_SIZE(LightsHeader, 32);
+
+const float kFinerSun = 6.0;
 
 SCONCE_STRUCTS_END
 #endif

@@ -120,7 +120,7 @@ Status Session::rebuildScene(Scene scene, const RenderSettings& settings)
 {
     dropRenderer();
     deviceScene.reset();
-    auto made = DeviceScene::create(gpu, scene, lightField->info(), sceneForFrames(settings.effects, lightField->info()));
+    auto made = DeviceScene::create(gpu, scene, lightField->info(), sceneForFrames(settings.effects, lightField->info(), eye));
     if (!made) return made.error();
     deviceScene = std::move(*made);
     lit = std::make_shared<const Scene>(std::move(scene));
@@ -204,6 +204,8 @@ Status Session::draw(const Camera& camera, const Shown& wanted, bool settleAtOnc
         const auto settled = settle(gpu, *live, liveState);
         if (!settled) return settled.error();
     }
+    eye = camera.eye;
+    if (Status moved = deviceScene->lookFrom(gpu, eye); !moved) return moved;
     const bool changing = live && !live->settled();
     if (changing) renderer->lightChanged();
     // As `render` numbers its frames: with a filter over time each draws rays of its own, without one all are the same picture.

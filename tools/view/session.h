@@ -84,6 +84,7 @@ private:
     std::optional<LiveLight> live;
     std::optional<LightGroups> lightGroups;
     std::optional<DeviceScene> deviceScene;
+    vec3 eye{0.0f}; // of the last frame, metres
     std::unique_ptr<SceneRenderer> renderer;
     std::optional<Show> shown;
     std::optional<GpuTimer> timer;

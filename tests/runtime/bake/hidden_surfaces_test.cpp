@@ -142,6 +142,44 @@ TEST_F(HiddenSurfaces, WhatIsSealedUpBehindASurfaceDoesNotDarkenIt)
     RecordProperty("dark of hidden; mean", std::to_string(dark) + " " + std::to_string(hidden) + " " + std::to_string(sum / all));
 }
 
+// A column on a base that is a little wider: beside the rim, which the eye sees and no probe does, of what faces up there nearly all is
+// within the column, where no light is.
+TEST_F(HiddenSurfaces, WhatStandsInOneAnotherDoesNotDarkenItsRim)
+{
+    constexpr float kBase = 0.4f, kOuter = 0.52f, kInner = 0.48f; // metres
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t black = mesh.material("black", vec3(0.01f), 1.0f);
+    scene.sky = vec3(1.0f);
+    mesh.box(vec3(-4.0f, -0.5f, -4.0f), vec3(4.0f, 0.0f, 4.0f), black);
+    mesh.box(vec3(-0.7f, 0.0f, -0.7f), vec3(0.7f, 0.2f, 0.7f), black);
+    mesh.cylinder(vec3(0.0f, 0.2f, 0.0f), kOuter, 0.2f, 40, black);
+    mesh.cylinder(vec3(0.0f, kBase, 0.0f), kInner, 2.0f, 40, black);
+    const FieldData field = bake(scene, {vec3(2.0f, 0.35f, 0.1f), vec3(-1.5f, 0.3f, 1.4f), vec3(-0.9f, 0.35f, -1.8f)});
+    const auto rays = TriangleRays::build(scene);
+    Random random(9, 0);
+    double all = 0.0, sum = 0.0;
+    int hidden = 0, dark = 0;
+    for (int i = 0; i < 200; ++i)
+    {
+        const float turn = 2.0f * std::numbers::pi_v<float> * random.uniform();
+        const vec3 place = 0.5f * vec3(std::cos(turn), 0.0f, std::sin(turn)) + vec3(0.0f, kBase, 0.0f), up(0, 1, 0);
+        const vec3 point = (place - field.info.origin) / field.info.scale;
+        int reads = 0;
+        const auto found =
+            twin::LightFieldTwin<float>(field, {}).surfaceLightAt(point, up, up, point + 0.5f * field.info.voxel * up, reads);
+        const double truth = skyAt(*rays, place, random);
+        hidden += found.probes <= 0;
+        dark += double(found.light.g) < 0.5 * truth;
+        sum += double(found.light.g);
+        all += truth;
+    }
+    EXPECT_GT(hidden, 150);
+    EXPECT_EQ(dark, 0);
+    EXPECT_NEAR(sum / all, 1.0, 0.25) << "cells in the open don't know how near the column is";
+    RecordProperty("dark of hidden; mean", std::to_string(dark) + " " + std::to_string(hidden) + " " + std::to_string(sum / all));
+}
+
 // A sealed room between lit ones, whose light is all that probes know.
 TEST_F(HiddenSurfaces, ADarkRoomStaysDark)
 {

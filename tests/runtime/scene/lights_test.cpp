@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -152,6 +153,38 @@ TEST(LightList, DirectionalMapsCoverTheScene)
             // Depth falls along the way the light travels.
             EXPECT_LT(glm::dot(vec3(light.shadowDepth), light.direction), 0.0f);
         }
+}
+
+// Of a large scene a directional light has maps about the eye, too, each of a sixth of the width of the one before and of the same depth.
+TEST(LightList, DirectionalMapsAboutAnEyeLieInOneAnother)
+{
+    Scene scene = cornell();
+    scene.lights.assign(2, Light{});
+    scene.lights[1].direction = glm::normalize(vec3(0.3f, -0.4f, 0.5f));
+    const gpu::LightFieldInfo small = fieldSpace(scene.bounds());
+    EXPECT_EQ(buildLightList(scene, small, {.eye = vec3(0.0f)}).header.sunLevels, 1u) << "its texels are fine enough";
+    MeshBuilder(scene).quad({-100, 0, 100}, {100, 0, 100}, {100, 0, -100}, {-100, 0, -100}, 0);
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    EXPECT_EQ(buildLightList(scene, space, {}).header.sunLevels, 1u) << "nobody looks";
+    const vec3 eye(20.0f, 1.7f, -3.0f), beside(21.0f, 0.0f, -2.5f);
+    const LightList list = buildLightList(scene, space, {.eye = eye});
+    ASSERT_EQ(list.header.sunLevels, 3u);
+    EXPECT_EQ(list.sunLayers, 6u);
+    EXPECT_EQ(list.lights[1].shadowLayer, 3);
+    EXPECT_LE(uint64_t(list.sunLayers) * list.settings.sunShadow * list.settings.sunShadow * 4, kShadowBytes);
+    for (int sun = 0; sun < 2; ++sun)
+    {
+        const auto views = shadowViews(list.lights[size_t(sun)], list.header);
+        ASSERT_EQ(views.size(), 3u);
+        const auto through = [&](size_t view, vec3 at) { return views[view].clip * vec4((at - space.origin) / space.scale, 1.0f); };
+        const vec4 off = through(0, beside) - through(0, eye);
+        for (const auto& [view, finer] : {std::pair(size_t(1), 6.0f), std::pair(size_t(2), 36.0f)})
+        {
+            EXPECT_LT(glm::length(vec2(through(view, eye))), 1e-4f);
+            EXPECT_LT(glm::distance(vec2(through(view, beside)), finer * vec2(off)), 1e-4f * finer);
+            EXPECT_FLOAT_EQ(through(view, beside).z, through(0, beside).z);
+        }
+    }
 }
 
 } // namespace

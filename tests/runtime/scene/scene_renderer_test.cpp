@@ -409,6 +409,50 @@ TEST_F(SceneRendererTest, ALowSunsShadowBeginsAtItsLedge)
     EXPECT_GT(lit, 5);
 }
 
+// The same ledge in a scene of 200 m, whose map's texels are 14 cm wide: where somebody looks there are finer ones, and they go along.
+TEST_F(SceneRendererTest, ShadowsOfTheSunAreFineAboutTheEye)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.8f));
+    mesh.box({-100, -1.2f, -100}, {100, -1, 100}, white);
+    mesh.box({-2, -1, -0.2f}, {2, 2, 0}, white);
+    mesh.box({-2, 1, 0}, {2, 1.05f, 0.2f}, white);
+    const vec3 down = glm::normalize(vec3(0.0f, -0.95f, -0.31f));
+    scene.lights.push_back(test::light(LightType::directional, vec3(0.0f), down, 1.0f));
+    scene.cameras.push_back({"wall", {0, 0.75f, 2}, {0, 0, -1}, {0, 1, 0}, 0.45f});
+    const auto field = bakeField(scene, std::vector<vec3>{{0, 0.8f, 1}});
+    ASSERT_TRUE(field) << field.error().message;
+    auto uploaded = DeviceScene::create(gpu(), scene, field->info, {.light = {.eye = vec3(80.0f, 1.0f, 60.0f)}});
+    const auto light = makeLightField(gpu(), *field);
+    ASSERT_TRUE(uploaded && light);
+    const auto renderer = SceneRenderer::create(gpu(), *uploaded, *light, settingsFor());
+    ASSERT_TRUE(renderer) << renderer.error().message;
+    const float end = 1.0f - 0.2f * 0.95f / 0.31f, span = 2.0f * std::tan(0.225f) * 2.0f;
+    const auto wrong = [&] // rows of the picture whose shadow isn't the ledge's, but where its end is, within 1 cm
+    {
+        const auto frame = (*renderer)->render(scene.cameras.front());
+        EXPECT_TRUE(frame);
+        int rows = 0;
+        for (uint32_t row = 0; row < kSide; ++row)
+        {
+            const float y = 0.75f + span * (0.5f - (float(row) + 0.5f) / float(kSide));
+            if (y > 1.0f - 0.005f || std::abs(y - end) < 0.01f) continue;
+            const float truth = y > end ? 0.0f : 0.8f / 3.14159f * -down.z;
+            rows += std::abs(frame->direct[row * kSide + kSide / 2].g - truth) > 0.03f;
+        }
+        return rows;
+    };
+    const int far = wrong();
+    EXPECT_GT(far, 3) << "or the map of all would do";
+    ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye));
+    EXPECT_EQ(wrong(), 0);
+    ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye + vec3(0.3f, 0.0f, 0.0f)));
+    EXPECT_EQ(wrong(), 0) << "so near nothing changes";
+    ASSERT_TRUE(uploaded->lookFrom(gpu(), vec3(-60.0f, 1.0f, 60.0f)));
+    EXPECT_EQ(wrong(), far);
+}
+
 // Objects that move are in the G-buffer and not in the light field: they are lit by it and reflect it.
 TEST_F(SceneRendererTest, ObjectThatTheLightFieldDoesNotKnowIsLitAndReflects)
 {
