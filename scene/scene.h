@@ -64,6 +64,7 @@ struct Material
     float alphaCutoff = 0.0f;    // 0: opaque; without a say where blended
     bool blended = false;        // light passes by 1 - alpha
     bool doubleSided = false;
+    bool retroreflective = false; // its specular lobe goes back to where light comes from, as road signs': viewerOfLobes(); glTF: extras
 };
 
 enum class LightType : uint32_t

@@ -592,6 +592,8 @@ Result<uint32_t> Importer::materialOf(int index)
     m.metallic = clamped(pbr.metallicFactor);
     m.roughness = clamped(pbr.roughnessFactor);
     m.doubleSided = source.doubleSided;
+    m.retroreflective = source.extras.Has("retroreflective") && source.extras.Get("retroreflective").IsBool() &&
+                        source.extras.Get("retroreflective").Get<bool>();
     if (source.alphaMode == "MASK") m.alphaCutoff = float(std::max(source.alphaCutoff, 0.0));
     m.blended = source.alphaMode == "BLEND";
     double strength = 1.0;

@@ -31,7 +31,7 @@ void main()
     vec3 shading = mappedNormal(material, uv, uvDx, uvDy, smooth_, across, down);
     if (dot(smooth_, geometric) < 0.0) shading = -shading;
     if (dot(shading, view) <= 0.0) shading = geometric; // interpolated or bent away from the eye
-    outNormalRoughness = vec4(shading, kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness);
+    outNormalRoughness = vec4(shading, (kRoughnessOverride >= 0.0 ? kRoughnessOverride : point.roughness) + sconceMaterials[material].retro);
     outBaseColorMetallic = vec4(point.baseColor.rgb, point.metallic);
     outDirect = storedBright(point.emission);
     outGeometricNormal = packUnorm2x16(octahedralFromDirection(geometric));

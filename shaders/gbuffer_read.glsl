@@ -5,7 +5,7 @@
 #include "stored_light.glsl"
 
 layout(set = 1, binding = kDepthBinding) uniform texture2D gDepth;           // r: reversed depth; 0 is the sky
-layout(set = 1, binding = kNormalRoughnessBinding) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness
+layout(set = 1, binding = kNormalRoughnessBinding) uniform texture2D gNormalRoughness; // xyz: shading normal, world, unit; w: roughness, and kRetro
 layout(set = 1, binding = kBaseColorMetallicBinding) uniform texture2D gBaseColorMetallic; // rgb linear, a metallic
 layout(scalar, set = 1, binding = kFrameBinding) uniform SconceFrame { FrameView frame; };
 
@@ -15,7 +15,8 @@ struct Pixel
     vec4 clip;     // ndc and reversed depth, w 1
     vec3 position; // world, metres
     vec3 normal;   // on the viewer's side
-    vec3 view;     // unit, towards the eye
+    vec3 view;     // unit, towards the eye; of a retroreflective surface viewerOfLobes()
+    bool retro;    // it is one
     BrdfSurface brdf;
 };
 
@@ -35,11 +36,12 @@ Pixel readPixel(ivec2 at)
     // A host's number that is none would spread by every filter, and index tables out of their bounds: such a pixel shows nothing. false for NaN
     float size = depth + dot(abs(normal), vec4(1.0)) + dot(abs(base), vec4(1.0));
     p.surface = depth > 0.0 && size < 1e3 && dot(normal.xyz, normal.xyz) > 0.25;
-    p.view = normalize(frame.eye - p.position);
     p.normal = frame.fieldFromNormals * normal.xyz;
+    p.retro = normal.w >= kRetro;
+    p.view = viewerOfLobes(p.normal, normalize(frame.eye - p.position), p.retro);
     p.brdf.baseColor = base.rgb;
     p.brdf.metallic = base.a;
-    p.brdf.roughness = normal.w;
+    p.brdf.roughness = p.retro ? normal.w - kRetro : normal.w;
     return p;
 }
 
@@ -75,7 +77,7 @@ vec3 geometricNormalAt(ivec2 at, Pixel p)
     vec3 across = cross(alongSurface(at, ivec2(1, 0), p), alongSurface(at, ivec2(0, 1), p));
     float size = length(across);
     if (!(size > 0.0 && size < 1e30)) return vec3(0.0);
-    return across * ((dot(across, p.view) < 0.0 ? -1.0 : 1.0) / size);
+    return across * ((dot(across, frame.eye - p.position) < 0.0 ? -1.0 : 1.0) / size);
 }
 
 /// Of a pixel, to ask how much others show the same surface.

@@ -43,7 +43,7 @@ Pixel readLookUp(inout LookUp l)
     p.position = 0.5 * (p.position + q.position);
     p.normal = normalize(p.normal + q.normal);
     p.brdf.roughness = 0.5 * (p.brdf.roughness + q.brdf.roughness);
-    p.view = normalize(frame.eye - p.position);
+    p.view = viewerOfLobes(p.normal, normalize(frame.eye - p.position), p.retro);
     return p;
 }
 

@@ -37,6 +37,7 @@ Pixel readPacked(ivec2 at, out uint terms)
     p.position = world.xyz / world.w;
     p.normal = directionFromOctahedral(vec2(bitfieldExtract(word.y, int(kTermCount), int(kNormalBits)), bitfieldExtract(word.y, int(kTermCount + kNormalBits), int(kNormalBits))) / kNormalSteps);
     p.view = vec3(0.0);
+    p.retro = false;
     p.brdf = BrdfSurface(vec3(0.0), 0.0, float(word.y >> (32u - kRoughnessBits)) / kRoughnessSteps);
     return p;
 }

@@ -138,7 +138,7 @@ void explainReflection(const RayScene& rays, const PathTracer& paths, const Fiel
     const float roughness = e.point.surface.roughness;
     e.traced = isMirror(roughness) || roughness < gpu::kRaysBelow + gpu::kRaysBlend;
     e.prefiltered = !isMirror(roughness) && roughness > gpu::kRaysBelow - gpu::kRaysBlend;
-    const vec3 direction = glm::normalize(glm::reflect(e.direction, e.point.normal));
+    const vec3 direction = glm::normalize(glm::reflect(-e.point.viewer, e.point.normal));
     const float offset = knobs::normalOffset.value * data.info.diagonal * data.info.scale; // as a frame's rays start
     e.ray = {e.point.position + offset * e.point.normal, direction, e.point.normal};
     e.way = explainRay(data, e.ray);

@@ -163,7 +163,7 @@ std::vector<Walk> Paths::leaveEyePoints(uint32_t path) const
         {
             if (!seen[i]) return;
             Random random(options.seed, i, path);
-            const auto next = byTriangles.scatter(*seen[i], -eyeRays[i].direction, random);
+            const auto next = byTriangles.scatter(*seen[i], random);
             if (!next) return;
             const vec3 normal = seen[i]->geometricNormal;
             walks[i] = {

@@ -51,30 +51,32 @@ ShadingPoint PathTracer::shade(const SurfaceHit& hit, vec3 view) const
     if (!(glm::dot(point.normal, view) > 0.0f)) point.normal = point.geometricNormal;
     point.surface = {vec3(material.baseColor), material.metallic, roughness.value_or(material.roughness)};
     point.lobes = lobesAt(point.surface, glm::dot(point.normal, view));
+    point.viewer = viewerOfLobes(point.normal, view, scene.materials[hit.material].retroreflective);
     point.emission = material.emission;
     return point;
 }
 
-BrdfValue PathTracer::reflect(const ShadingPoint& point, vec3 view, vec3 light) const
+BrdfValue PathTracer::reflect(const ShadingPoint& point, vec3 light) const
 {
     if (!(glm::dot(point.geometricNormal, light) > 0.0f)) return {vec3(0.0f), vec3(0.0f)};
-    BrdfValue value = evaluateLobes(point.lobes, point.surface.roughness, point.normal, view, light);
+    BrdfValue value = evaluateLobes(point.lobes, point.surface.roughness, point.normal, point.viewer, light);
     const float cosine = std::max(glm::dot(point.normal, light), 0.0f);
     value.diffuse *= cosine;
     value.specular *= cosine;
     return value;
 }
 
-float PathTracer::scatterPdf(const ShadingPoint& point, vec3 view, vec3 light) const
+float PathTracer::scatterPdf(const ShadingPoint& point, vec3 light) const
 {
     const float share = specularShare(point.lobes);
     const float diffuse = std::max(glm::dot(point.normal, light), 0.0f) / kBrdfPi;
     if (isMirror(point.surface.roughness)) return (1.0f - share) * diffuse;
-    return share * visibleNormalPdf(point.normal, view, light, ggxAlpha(point.surface.roughness)) + (1.0f - share) * diffuse;
+    return share * visibleNormalPdf(point.normal, point.viewer, light, ggxAlpha(point.surface.roughness)) + (1.0f - share) * diffuse;
 }
 
-std::optional<PathTracer::Scatter> PathTracer::scatter(const ShadingPoint& point, vec3 view, Random& random) const
+std::optional<PathTracer::Scatter> PathTracer::scatter(const ShadingPoint& point, Random& random) const
 {
+    const vec3 view = point.viewer;
     const float nv = glm::dot(point.normal, view);
     if (!(nv > 0.0f)) return std::nullopt;
     const float share = specularShare(point.lobes);
@@ -96,15 +98,15 @@ std::optional<PathTracer::Scatter> PathTracer::scatter(const ShadingPoint& point
     }
     else
         sample.direction = glm::normalize(toWorld(frame, sampleCosine(u)));
-    sample.pdf = scatterPdf(point, view, sample.direction);
+    sample.pdf = scatterPdf(point, sample.direction);
     if (!(sample.pdf > 0.0f)) return std::nullopt;
-    const BrdfValue value = reflect(point, view, sample.direction);
+    const BrdfValue value = reflect(point, sample.direction);
     sample.diffuse = value.diffuse / sample.pdf;
     sample.specular = value.specular / sample.pdf;
     return sample;
 }
 
-vec3 PathTracer::punctual(const ShadingPoint& point, vec3 view, const Light& light) const
+vec3 PathTracer::punctual(const ShadingPoint& point, const Light& light) const
 {
     vec3 toLight = -light.direction;
     float distance = std::numeric_limits<float>::infinity();
@@ -118,13 +120,13 @@ vec3 PathTracer::punctual(const ShadingPoint& point, vec3 view, const Light& lig
         scale = distanceAttenuation(distance, light.range);
         if (light.type == LightType::spot) scale *= spotAttenuation(-glm::dot(toLight, light.direction), light.innerCone, light.outerCone);
     }
-    const BrdfValue value = reflect(point, view, toLight);
+    const BrdfValue value = reflect(point, toLight);
     const vec3 seen = (value.diffuse + value.specular) * light.intensity * scale;
     if (!any(seen) || rays.occluded(start(point), toLight, std::max(distance - 2.0f * rays.offset(), 0.0f))) return vec3(0.0f);
     return seen;
 }
 
-BrdfValue PathTracer::emitterLight(const ShadingPoint& point, vec3 view, Random& random) const
+BrdfValue PathTracer::emitterLight(const ShadingPoint& point, Random& random) const
 {
     BrdfValue none{vec3(0.0f), vec3(0.0f)};
     if (emitters.empty()) return none;
@@ -137,7 +139,7 @@ BrdfValue PathTracer::emitterLight(const ShadingPoint& point, vec3 view, Random&
     const float cosine = std::abs(glm::dot(geometricNormal(scene, sample.triangle), direction));
     if (!(cosine > 0.0f)) return none;
     const float pdf = sample.areaPdf * distance * distance / cosine;
-    BrdfValue value = reflect(point, view, direction);
+    BrdfValue value = reflect(point, direction);
     if (!any(value.diffuse) && !any(value.specular)) return none;
     const vec3 emission = evaluateMaterial(scene, scene.triangleMaterial[sample.triangle], sample.uv).emission;
     if (!any(emission)) return none;
@@ -145,7 +147,7 @@ BrdfValue PathTracer::emitterLight(const ShadingPoint& point, vec3 view, Random&
     // what lies behind it was met through a hole of it.
     const auto hit = rays.closest(origin, direction);
     if (!hit || (hit->triangle != sample.triangle && std::abs(hit->t - distance) > 2.0f * rays.offset())) return none;
-    const float weight = balance(pdf, scatterPdf(point, view, direction)) / pdf;
+    const float weight = balance(pdf, scatterPdf(point, direction)) / pdf;
     value.diffuse *= emission * weight;
     value.specular *= emission * weight;
     return value;
@@ -161,11 +163,10 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, vec3 textured, Random& 
         return light;
     }
     if (textured != direction) hit = rays.texturedBy(*hit, origin, textured);
-    vec3 view = -direction;
-    ShadingPoint point = shade(*hit, view);
+    ShadingPoint point = shade(*hit, -direction);
     // In full: no draw of an emitter stands for what the eye sees itself.
     light.direct = point.emission;
-    for (const Light& source : scene.lights) light.direct += punctual(point, view, source);
+    for (const Light& source : scene.lights) light.direct += punctual(point, source);
 
     vec3 diffuse(1.0f), glossy(1.0f); // the path's weight by the lobe that passed it on at the first hit
     // The picture's own point, then one that a probe sees by direct light alone, then one more for every bounce of the bake: the reference
@@ -173,7 +174,7 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, vec3 textured, Random& 
     for (uint32_t vertex = 1; vertex <= bounces + 2; ++vertex)
     {
         // Beyond the first hit both lobes pass light on, and the first hit's lobe alone says to which term it counts.
-        const BrdfValue emitted = emitterLight(point, view, random);
+        const BrdfValue emitted = emitterLight(point, random);
         const vec3 both = emitted.diffuse + emitted.specular;
         light.diffuse += diffuse * (vertex == 1 ? emitted.diffuse : both);
         light.glossy += glossy * (vertex == 1 ? emitted.specular : both);
@@ -181,12 +182,12 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, vec3 textured, Random& 
         if (vertex > 1 && !scene.lights.empty())
         {
             const auto count = static_cast<uint32_t>(scene.lights.size());
-            const vec3 seen = punctual(point, view, scene.lights[random.below(count)]) * static_cast<float>(count);
+            const vec3 seen = punctual(point, scene.lights[random.below(count)]) * static_cast<float>(count);
             light.diffuse += diffuse * seen;
             light.glossy += glossy * seen;
         }
 
-        const auto next = scatter(point, view, random);
+        const auto next = scatter(point, random);
         if (!next) break;
         diffuse *= vertex == 1 ? next->diffuse : next->diffuse + next->specular;
         glossy *= vertex == 1 ? next->specular : next->diffuse + next->specular;
@@ -209,13 +210,12 @@ PathLight PathTracer::trace(vec3 origin, vec3 direction, vec3 textured, Random& 
             light.glossy += glossy * scene.sky;
             break;
         }
-        view = -next->direction;
-        point = shade(*hit, view);
+        point = shade(*hit, -next->direction);
         if (any(point.emission))
         {
             // The same light as emitterLight() draws, found by chance: the balance heuristic shares it between the two. A mirror's ray has
             // no density (pdf 0), no draw of an emitter could have found it, and it counts in full.
-            const float cosine = std::abs(glm::dot(hit->geometricNormal, view));
+            const float cosine = std::abs(glm::dot(hit->geometricNormal, next->direction));
             const float areaPdf = emitters.areaPdf(hit->triangle);
             float weight = 1.0f;
             if (next->pdf > 0.0f && areaPdf > 0.0f && cosine > 0.0f) weight = balance(next->pdf, areaPdf * hit->t * hit->t / cosine);

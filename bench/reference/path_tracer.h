@@ -18,6 +18,7 @@ struct ShadingPoint
     vec3 normal{0.0f};          // shading normal, on the viewer's side
     BrdfSurface surface{};
     BrdfLobes lobes{}; // of the surface, to the viewer
+    vec3 viewer{0.0f}; // unit: viewerOfLobes()
     vec3 emission{0.0f};
 };
 
@@ -46,13 +47,13 @@ public:
         vec3 specular{0.0f};
         float pdf = 0.0f; // over solid angle; 0 for the mirror's delta
     };
-    std::optional<Scatter> scatter(const ShadingPoint& point, vec3 view, Random& random) const;
+    std::optional<Scatter> scatter(const ShadingPoint& point, Random& random) const;
 
 private:
-    float scatterPdf(const ShadingPoint& point, vec3 view, vec3 light) const;
-    BrdfValue reflect(const ShadingPoint& point, vec3 view, vec3 light) const; // brdf * cosine
-    vec3 punctual(const ShadingPoint& point, vec3 view, const Light& light) const;
-    BrdfValue emitterLight(const ShadingPoint& point, vec3 view, Random& random) const;
+    float scatterPdf(const ShadingPoint& point, vec3 light) const;
+    BrdfValue reflect(const ShadingPoint& point, vec3 light) const; // brdf * cosine
+    vec3 punctual(const ShadingPoint& point, const Light& light) const;
+    BrdfValue emitterLight(const ShadingPoint& point, Random& random) const;
     vec3 start(const ShadingPoint& point) const { return point.position + point.geometricNormal * rays.offset(); }
 
     const RayScene& rays;

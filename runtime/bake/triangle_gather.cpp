@@ -160,7 +160,14 @@ struct Gatherer : LightFieldTwin<float>
         vec3 normal, shading; // unit, on the side that is met
         BrdfSurface surface;
         uint32_t material;
+        bool retroreflective;
     };
+
+    /// That a place's lobes are for, of a ray along `direction`.
+    static vec3 viewerAt(const Place& place, vec3 direction)
+    {
+        return viewerOfLobes(place.shading, -direction, place.retroreflective);
+    }
 
     Place placeOf(const ExactRays::Hit& hit, vec3 direction) const
     {
@@ -168,13 +175,14 @@ struct Gatherer : LightFieldTwin<float>
         const uvec3 corner = scene.triangles[hit.triangle];
         const vec3 share(1.0f - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
         const auto blend = [&](const auto& of) { return share.x * of[corner.x] + share.y * of[corner.y] + share.z * of[corner.z]; };
-        Place place{blend(scene.positions), facing(hit.triangle, direction), vec3(0.0f), {}, scene.triangleMaterial[hit.triangle]};
+        Place place{blend(scene.positions), facing(hit.triangle, direction), vec3(0.0f), {}, scene.triangleMaterial[hit.triangle], false};
         const vec3 smooth_ = blend(scene.normals);
         place.shading = dot(smooth_, smooth_) > 1e-12f ? normalize(smooth_) : place.normal;
         if (dot(place.shading, place.normal) < 0.0f) place.shading = -place.shading;
         if (dot(place.shading, direction) > -kLeastCosine) place.shading = place.normal;
         const sconce::SurfacePoint look = evaluateMaterial(scene, place.material, blend(scene.uvs));
         place.surface = {clamp(vec3(look.baseColor), 0.0f, 1.0f), look.metallic, look.roughness};
+        place.retroreflective = scene.materials[place.material].retroreflective;
         return place;
     }
     static constexpr float kLeastCosine = 1e-3f; // of a shading normal to the ray
@@ -192,13 +200,12 @@ struct Gatherer : LightFieldTwin<float>
     float reflectBy(const Place& place, Random& random, vec3& direction) const
     {
         const TangentFrame tangents = tangentFrame(place.shading);
-        const vec3 view = toTangent(tangents, -direction);
+        const vec3 back = viewerAt(place, direction), view = toTangent(tangents, back);
         const float alpha = ggxAlpha(place.surface.roughness);
         const bool mirror = isMirror(place.surface.roughness);
         vec3 out(0.0f);
         for (int i = 0; i < kTries && !(dot(out, place.normal) > 0.0f); ++i)
             out = toWorld(tangents, reflect(-view, mirror ? vec3(0.0f, 0.0f, 1.0f) : sampleVisibleNormal(view, alpha, random.uniform2())));
-        const vec3 back = -direction;
         direction = dot(out, place.normal) > 0.0f ? normalize(out) : reflect(direction, place.normal);
         return mirror ? kMirrorDensity : std::max(visibleNormalPdf(place.shading, back, direction, alpha), 1e-6f);
     }
@@ -255,8 +262,9 @@ struct Gatherer : LightFieldTwin<float>
         if (isMirror(place.surface.roughness)) return vec3(0.0f);
         const Drawn light = drawPatch(place, random);
         if (light.emission == vec3(0.0f)) return vec3(0.0f);
-        const float density = light.density + visibleNormalPdf(place.shading, -direction, light.toLight, ggxAlpha(place.surface.roughness));
-        return evaluateLobes(lobes, place.surface.roughness, place.shading, -direction, light.toLight).specular *
+        const float density =
+            light.density + visibleNormalPdf(place.shading, viewerAt(place, direction), light.toLight, ggxAlpha(place.surface.roughness));
+        return evaluateLobes(lobes, place.surface.roughness, place.shading, viewerAt(place, direction), light.toLight).specular *
                (dot(light.toLight, place.shading) / density) * light.emission;
     }
 
@@ -274,7 +282,7 @@ struct Gatherer : LightFieldTwin<float>
             const DeltaLight at = deltaLightAt(light, light.type, point, 2.0f * field.diagonal);
             const float cosine = dot(at.toLight, place.shading);
             if (!(luminance(at.irradiance) > 0.0f) || !(cosine > 0.0f) || !(dot(at.toLight, place.normal) > 0.0f)) continue;
-            const float sent = cosine * evaluateLobes(coat, roughness, place.shading, -direction, at.toLight).specular.x;
+            const float sent = cosine * evaluateLobes(coat, roughness, place.shading, viewerAt(place, direction), at.toLight).specular.x;
             const float asked = std::min(sent / kSurelyAsked, 1.0f);
             if (random.uniform() < asked && emitterReaches(point, at.toLight, at.distance, place.normal))
                 sum += (1.0f - place.surface.metallic) * sent / asked * at.irradiance;

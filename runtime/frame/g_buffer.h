@@ -10,7 +10,8 @@ namespace sconce
 struct FrameInputs
 {
     VkImageView depth = VK_NULL_HANDLE;             // reversed: 1 at the near plane, 0 where nothing was drawn
-    VkImageView normalRoughness = VK_NULL_HANDLE;   // xyz shading normal, world, unit, on the viewer's side; w roughness [0,1]
+    VkImageView normalRoughness = VK_NULL_HANDLE;   // xyz shading normal, world, unit, on the viewer's side; w roughness [0,1], and
+                                                    // gpu::kRetro more where the surface is retroreflective
     VkImageView baseColorMetallic = VK_NULL_HANDLE; // rgb linear, a metallic
     VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
 };

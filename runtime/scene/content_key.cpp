@@ -88,7 +88,8 @@ void addScene(ContentHash& hash, const Scene& scene)
     {
         hash.add(m.baseColor), addTexture(hash, m.baseColorTexture), hash.add(m.metallic), hash.add(m.roughness);
         addTexture(hash, m.metallicRoughnessTexture), hash.add(m.emission), addTexture(hash, m.emissionTexture), hash.add(m.alphaCutoff);
-        hash.add(m.blended), addTexture(hash, m.normalTexture), hash.add(m.normalStrength), hash.add(m.doubleSided);
+        hash.add(m.blended), addTexture(hash, m.normalTexture), hash.add(m.normalStrength), hash.add(m.doubleSided),
+            hash.add(m.retroreflective);
     }
     for (const Image& image : scene.images) hash.add(image.width), hash.add(image.height), hash.addAll(image.rgba);
     for (const Light& light : scene.lights)

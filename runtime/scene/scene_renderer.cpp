@@ -551,6 +551,8 @@ Result<RenderedFrame> SceneRenderer::read()
         std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));
     }
     if (auto s = colors(frame.normal, normalRoughness, read, &frame.roughness); !s) return s.error();
+    for (float& roughness : frame.roughness)
+        if (roughness >= gpu::kRetro) roughness -= gpu::kRetro;
     std::vector<float> metallic;
     if (auto s = colors(frame.albedo, baseColorMetallic, read, &metallic); !s) return s.error();
     std::vector<vec3> depths;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "shaders/shared/frame.h"
 
 namespace sconce
 {
@@ -222,8 +223,9 @@ std::vector<gpu::GpuMaterial> gpuMaterials(const Scene& scene, const TextureArra
     for (const Material& material : scene.materials)
         materials.push_back({material.baseColor, material.emission, material.metallic, material.roughness,
                              material.blended ? gpu::kBlended : material.alphaCutoff, material.normalStrength,
-                             gpuTexture(material.baseColorTexture, color), gpuTexture(material.metallicRoughnessTexture, data),
-                             gpuTexture(material.emissionTexture, color), gpuTexture(material.normalTexture, data)});
+                             material.retroreflective ? gpu::kRetro : 0.0f, gpuTexture(material.baseColorTexture, color),
+                             gpuTexture(material.metallicRoughnessTexture, data), gpuTexture(material.emissionTexture, color),
+                             gpuTexture(material.normalTexture, data)});
     return materials;
 }
 

@@ -42,6 +42,7 @@ using brdf_float::TangentFrame;
 using brdf_float::tangentFrame;
 using brdf_float::toTangent;
 using brdf_float::toWorld;
+using brdf_float::viewerOfLobes;
 using brdf_float::visibleNormalPdf;
 using brdf_float::whiteShares;
 using glm::vec2;

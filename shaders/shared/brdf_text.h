@@ -42,6 +42,15 @@ struct TangentFrame
     vec3 normal;
 };
 
+/// The viewer that a surface's lobes are for. A retroreflective one sends light back to where it comes from: its lobe is the one that a viewer on the
+/// other side of the normal has. As wide, of the same energy, and as reciprocal (Portsmouth et al. 2026, "The Minimal Retroreflective Microfacet Model").
+/// @param view  unit, to the eye, or to where the light goes
+SCONCE_PURE vec3 viewerOfLobes(vec3 normal, vec3 view, bool retroreflective)
+{
+    if (!retroreflective) return view;
+    return real(2.0) * dot(normal, view) * normal - view;
+}
+
 SCONCE_PURE bool isMirror(real roughness) { return roughness < kMirrorRoughness; }
 
 SCONCE_PURE real ggxAlpha(real roughness)

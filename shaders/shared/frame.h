@@ -26,6 +26,7 @@ const uint kFollowsChange = 3u; // for kChangeFrames frames after light has chan
 const uint kChangeFrames = 8u;
 
 const float kRaysBelow = 0.4f;   // roughness
+const float kRetro = 2.0f; // that the G-buffer's roughness of a retroreflective surface has more: see viewerOfLobes()
 const float kRaysBlend = 0.05f;  // either side of raysBelow both are made and blended, so that no seam shows in a roughness texture
 
 // The terms of a pixel's light, each of which has passes of its own.

@@ -21,12 +21,13 @@ struct GpuMaterial
     float roughness;
     float alphaCutoff; // 0: opaque, kBlended: alpha is a chance
     float normalStrength;
+    float retro; // kRetro: retroreflective; else 0
     GpuTexture baseColorTexture;
     GpuTexture metallicRoughnessTexture;
     GpuTexture emissionTexture;
     GpuTexture normalTexture;
 };
-SCONCE_CHECK_SIZE(GpuMaterial, 172);
+SCONCE_CHECK_SIZE(GpuMaterial, 176);
 
 const float kBlended = -1.0f;
 

@@ -214,6 +214,22 @@ TEST_F(SceneGltf, MaterialFactorsAndEmissiveStrength)
     EXPECT_EQ(m.emission, vec3(15.0f, 7.5f, 0.0f));
     EXPECT_FLOAT_EQ(m.alphaCutoff, 0.3f);
     EXPECT_TRUE(m.doubleSided);
+    EXPECT_FALSE(m.retroreflective);
+}
+
+TEST_F(SceneGltf, ExtrasMakeAMaterialRetroreflective)
+{
+    triangle();
+    primitive()["material"] = 0;
+    for (const auto& [extras, expected] : {std::pair{Json{{"retroreflective", true}}, true},
+                                           {Json{{"retroreflective", false}}, false},
+                                           {Json{{"retroreflective", 1}}, false},
+                                           {Json::array({"retroreflective"}), false},
+                                           {Json("retroreflective"), false}})
+    {
+        gltf["materials"] = Json::array({{{"extras", extras}}});
+        EXPECT_EQ(load().materials[0].retroreflective, expected) << extras.dump();
+    }
 }
 
 TEST_F(SceneGltf, ConstantAlphaBelowTheCutoffIsNotThere)

@@ -220,6 +220,30 @@ TEST(Brdf, ReciprocalInViewAndLight)
     EXPECT_NEAR(a.specular.x / gain(0.8), b.specular.x / gain(0.3), 1e-3 * a.specular.x);
 }
 
+// As much as the lobe about the mirrored direction, but back: brightest towards the viewer, and reciprocal but for the gain, as that is.
+TEST(Brdf, ARetroreflectiveLobeLiesAboutTheViewerAndReflectsAsMuch)
+{
+    const vec3 view = directionAt(0.64, 0.3), light = directionAt(0.5, 0.9);
+    for (const float roughness : {0.3f, 0.6f, 1.0f})
+    {
+        const BrdfSurface surface{vec3(0.9f), 1.0f, roughness};
+        const auto retro = [&](vec3 v, vec3 l) { return evaluateBrdf(surface, kNormal, viewerOfLobes(kNormal, v, true), l); };
+        const double mirrored = overHemisphere([&](vec3 l) { return double(evaluateBrdf(surface, kNormal, view, l).specular.x) * l.z; });
+        EXPECT_NEAR(overHemisphere([&](vec3 l) { return double(retro(view, l).specular.x) * l.z; }), mirrored, 1e-3 * mirrored);
+        const double alpha = double(roughness) * roughness;
+        const auto gain = [&](double nv) { return 1.0 + 0.9 * (1.0 / whiteByQuadrature(nv, alpha).x - 1.0); };
+        const double there = retro(view, light).specular.x / gain(0.64), back = retro(light, view).specular.x / gain(0.5);
+        EXPECT_NEAR(there, back, 5e-3 * there) << roughness << ": the gain is of a table";
+        EXPECT_NEAR(retro(view, view).specular.x, evaluateBrdf(surface, kNormal, view, viewerOfLobes(kNormal, view, true)).specular.x,
+                    1e-4 * retro(view, view).specular.x);
+    }
+    EXPECT_EQ(viewerOfLobes(kNormal, view, false), view);
+    const BrdfSurface coat{vec3(0.5f), 0.0f, 0.3f};
+    EXPECT_NEAR(evaluateBrdf(coat, kNormal, viewerOfLobes(kNormal, view, true), light).diffuse.x,
+                evaluateBrdf(coat, kNormal, view, light).diffuse.x, 1e-6f)
+        << "what is below the coat is scattered to all sides";
+}
+
 TEST(Brdf, VisibleNormalSamplesAgreeWithQuadrature)
 {
     for (float roughness : {0.35f, 0.6f, 1.0f})

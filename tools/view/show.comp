@@ -82,7 +82,7 @@ vec3 encodedView(ivec2 at)
 {
     float w = texelFetch(depthImage, at, 0).r;
     if (view == 4u) return w > 0.0 ? 0.5 + 0.5 * texelFetch(normalRoughness, at, 0).rgb : vec3(0.0);
-    if (view == 7u) return w > 0.0 ? texelFetch(normalRoughness, at, 0).aaa : vec3(0.0);
+    if (view == 7u) return w > 0.0 ? vec3(mod(texelFetch(normalRoughness, at, 0).a, 2.0)) : vec3(0.0);
     return srgbFromLinear(linearView(at));
 }
 

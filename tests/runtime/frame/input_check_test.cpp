@@ -132,6 +132,7 @@ protected:
 TEST_F(InputCheckTest, EachMistakeIsNamedAndNoneWhereThereIsNone)
 {
     EXPECT_EQ(saidOf([](Frame&) {}), "");
+    EXPECT_EQ(saidOf([](Frame& frame) { frame.each(&Frame::normal, [](vec4& n) { n.w += gpu::kRetro; }); }), "") << "retroreflective";
     const auto view = [](auto&& change) { return [=](Frame& frame) { change(frame.view); }; };
     const auto metres = [](const vec4& depth) { return depth.x > 0.0f ? kNear / depth.x : 0.0f; };
     const Pinhole seen(camera, kSide, kSide);

@@ -55,7 +55,9 @@ TEST(ContentKey, WhatLightDependsOnCountsInASceneAndItsNameDoesNot)
     glass.materials[0].blended = true;
     bumped.materials[0].normalTexture.image = 0;
     flatter.materials[0].normalStrength = 0.5f;
-    for (const Scene* other : {&glass, &bumped, &flatter}) EXPECT_NE(keyOf(*other), key);
+    Scene sign = *scene;
+    sign.materials[0].retroreflective = true;
+    for (const Scene* other : {&glass, &bumped, &flatter, &sign}) EXPECT_NE(keyOf(*other), key);
 }
 
 // XXH3_64bits("") and its like of the algorithm's published test vectors: nothing added, and the same bytes in one piece or many.

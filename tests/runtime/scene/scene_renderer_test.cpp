@@ -352,6 +352,66 @@ TEST_F(SceneRendererTest, NormalTexturesBendTheGBufferAsThePathTracer)
     EXPECT_LT(off, frame->normal.size() / 50);
 }
 
+// A metal wall that sends light back to where it comes from shows what is about the eye, where a mirror-like one would show the red wall:
+// by rays, by prefiltered radiance, in the light of a lamp at the eye, and in what it throws on others.
+TEST_F(SceneRendererTest, ARetroreflectiveWallIsThePathTracers)
+{
+    for (const float roughness : {0.0f, 0.25f, 0.55f})
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        const uint32_t white = mesh.material("white", vec3(0.7f)), red = mesh.material("red", vec3(0.7f, 0.05f, 0.05f)),
+                       green = mesh.material("green", vec3(0.05f, 0.7f, 0.05f)), sign = mesh.material("sign", vec3(0.9f), roughness, 1.0f);
+        mesh.box({-1.1f, -0.1f, -1.1f}, {1.1f, 0, 1.1f}, white);
+        mesh.box({-1.1f, 2, -1.1f}, {1.1f, 2.1f, 1.1f}, white);
+        mesh.box({-1.1f, 0, -1.1f}, {-1, 2, 1.1f}, red);
+        mesh.box({1, 0, -1.1f}, {1.1f, 2, 1.1f}, green);
+        mesh.box({-1, 0, 1}, {1, 2, 1.1f}, white);
+        mesh.box({-1, 0, -1.1f}, {1, 2, -1}, sign);
+        mesh.quad({-0.3f, 1.98f, -0.3f}, {0.3f, 1.98f, -0.3f}, {0.3f, 1.98f, 0.3f}, {-0.3f, 1.98f, 0.3f}, mesh.emitter("lamp", vec3(8.0f)));
+        mesh.camera("towards the sign", {0.7f, 1.0f, 0.8f}, {-0.1f, 1.0f, -1.0f}, 40.0f);
+        scene.materials[sign].retroreflective = true;
+        const std::vector<vec3> probes = {{0.5f, 1.5f, 0.5f}, {-0.6f, 0.6f, 0.5f}, {0.6f, 0.5f, -0.5f}, {-0.5f, 1.4f, -0.4f}};
+        Scene shiny = scene, spoken = scene;
+        shiny.materials[sign].retroreflective = false;
+        spoken.lights.push_back(test::light(LightType::point, {0.68f, 1.05f, 0.78f}, {0, -1, 0}, 0.5f));
+        const auto field = bakeByTriangles(scene, probes, bakeOf(256, 2, kFewTexels, 128));
+        ASSERT_TRUE(field) << field.error().message;
+        const auto frame = drawWith(*field, scene, settingsFor()), mirrored = drawWith(*field, shiny, settingsFor()),
+                   besideALamp = drawWith(*field, spoken, settingsFor());
+        ASSERT_TRUE(frame && mirrored && besideALamp);
+        const ImageSet truth = truthOf(scene, 128), truthBesideALamp = truthOf(spoken, 4);
+        EXPECT_NEAR(frame->roughness[kSide * kSide / 2 + kSide / 2], roughness, 2e-3f) << "as it is told";
+        const auto channel = [](std::span<const float> pixels, size_t c)
+        {
+            double sum = 0.0;
+            for (size_t i = c; i < pixels.size(); i += 3) sum += pixels[i];
+            return sum;
+        };
+        const auto ratio = [&](const std::vector<vec3>& ours, const ImageSet& of, const char* layer, size_t c)
+        { return channel(floats(ours), c) / channel(of.find(layer)->pixels, c); };
+        for (size_t c = 0; c < 3; ++c)
+        {
+            const std::string what = "roughness " + std::to_string(roughness) + ", channel " + std::to_string(c);
+            const double glossy = ratio(frame->glossyIndirect, truth, "glossy_indirect", c),
+                         diffuse = ratio(frame->diffuseIndirect, truth, "diffuse_indirect", c),
+                         direct = ratio(besideALamp->direct, truthBesideALamp, "direct", c);
+            RecordProperty(what, std::to_string(glossy) + " " + std::to_string(diffuse) + " " + std::to_string(direct));
+            // Of what a metal reflects a quarter is baked as if it went to all sides (TriangleGather), which lights the room more than what
+            // goes back.
+            EXPECT_NEAR(glossy, 1.0, roughness < gpu::kRaysBelow ? 0.03 : 0.2) << what;
+            EXPECT_NEAR(diffuse, 1.0, 0.12) << what;
+            EXPECT_NEAR(direct, 1.0, 0.01) << what;
+        }
+        const auto greener = [&](const RenderedFrame& of)
+        { return channel(floats(of.glossyIndirect), 1) / channel(floats(of.glossyIndirect), 0); };
+        if (roughness < gpu::kRaysBelow)
+        {
+            EXPECT_GT(greener(*frame), 1.3 * greener(*mirrored)) << roughness;
+        }
+    }
+}
+
 TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
