@@ -29,7 +29,7 @@ struct HiddenPlaces
 /// be seen from outside; where nothing arrives, that is kept only where a look-up would find light without, as in a dark room beside a lit
 /// one; of a voxel's each counts that is open, those in a gap by how much of what probes see lies before them, what is sealed up or within
 /// something solid not at all. Afterwards the field's info.hidden and surfaceLight hold them. Cost: a look-up for each of up to some
-/// millions of points, and for each voxel and facing 64 rays for the light, and 64 to 256 for where to gather it.
+/// millions of points, and for each voxel and facing 64 rays for the light, and 128 to 512 for where to gather it.
 /// @param lit   with surface light, without refined texels
 /// @param sent  by each texel
 /// @param places  where light was gathered before, of the same surfaces in other light, which then is where it is; null, or empty: found,

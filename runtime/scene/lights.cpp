@@ -151,14 +151,16 @@ void addSky(const Scene& scene, uint32_t count, LightList& list)
     }
 }
 
-/// How many maps a directional light has, so that the finest one's texels are no wider than some.
+/// How many maps a directional light has, so that the finest one's texels are no wider than some, as far as the maps of all such lights
+/// keep the size that is asked for.
 /// @param texel  of the map of the whole scene, metres
-uint32_t sunLevels(float texel)
+uint32_t sunLevels(float texel, uint32_t suns, uint32_t size)
 {
     constexpr float kFineTexel = 0.004f; // metres: a pixel of 1280 across 60 degrees, at 4 m
-    constexpr uint32_t kMostLevels = 3;
+    constexpr uint32_t kMostLayers = 32; // any device has 256
     uint32_t levels = 1;
-    for (; levels < kMostLevels && texel > kFineTexel; ++levels) texel /= gpu::kFinerSun;
+    const auto fits = [&](uint32_t layers) { return layers <= kMostLayers && 4 * uint64_t(layers) * size * size <= kShadowBytes; };
+    for (; texel > kFineTexel && fits(suns * (levels + 1)); ++levels) texel /= gpu::kFinerSun;
     return levels;
 }
 
@@ -172,7 +174,7 @@ void addFinerSuns(const gpu::LightFieldInfo& space, const LightSettings& setting
         fitDirectional(light, space, settings.sunShadow);
         texel = std::max(texel, light.shadowTexel * space.scale);
     }
-    list.header.sunLevels = sunLevels(texel);
+    list.header.sunLevels = sunLevels(texel, list.sunLayers, settings.sunShadow);
     list.header.eye = (*settings.eye - space.origin) / space.scale;
     list.sunLayers *= list.header.sunLevels;
     for (gpu::GpuLight& light : list.lights)

@@ -167,7 +167,15 @@ TEST(LightList, DirectionalMapsAboutAnEyeLieInOneAnother)
     const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
     EXPECT_EQ(buildLightList(scene, space, {}).header.sunLevels, 1u) << "nobody looks";
     const vec3 eye(20.0f, 1.7f, -3.0f), beside(21.0f, 0.0f, -2.5f);
-    const LightList list = buildLightList(scene, space, {.eye = eye});
+    EXPECT_EQ(buildLightList(scene, space, {.eye = eye}).header.sunLevels, 1u) << "two suns' maps of that size are all there is room for";
+    Scene one = scene;
+    one.lights.pop_back();
+    EXPECT_EQ(buildLightList(one, space, {.eye = eye}).header.sunLevels, 2u);
+    Scene many = scene;
+    many.lights.assign(100, Light{});
+    EXPECT_EQ(buildLightList(many, space, {.sunShadow = 256, .eye = eye}).sunLayers, 100u);
+    const LightList list = buildLightList(scene, space, {.sunShadow = 2048, .eye = eye});
+    EXPECT_EQ(list.settings.sunShadow, 2048u) << "no map is smaller for it";
     ASSERT_EQ(list.header.sunLevels, 3u);
     EXPECT_EQ(list.sunLayers, 6u);
     EXPECT_EQ(list.lights[1].shadowLayer, 3);

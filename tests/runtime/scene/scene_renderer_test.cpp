@@ -469,7 +469,7 @@ TEST_F(SceneRendererTest, ALowSunsShadowBeginsAtItsLedge)
     EXPECT_GT(lit, 5);
 }
 
-// The same ledge in a scene of 200 m, whose map's texels are 14 cm wide: where somebody looks there are finer ones, and they go along.
+// The same ledge in a scene of 200 m, whose map of 1024 has texels of 28 cm: where somebody looks there are finer ones, and they go along.
 TEST_F(SceneRendererTest, ShadowsOfTheSunAreFineAboutTheEye)
 {
     Scene scene;
@@ -483,7 +483,7 @@ TEST_F(SceneRendererTest, ShadowsOfTheSunAreFineAboutTheEye)
     scene.cameras.push_back({"wall", {0, 0.75f, 2}, {0, 0, -1}, {0, 1, 0}, 0.45f});
     const auto field = bakeField(scene, std::vector<vec3>{{0, 0.8f, 1}});
     ASSERT_TRUE(field) << field.error().message;
-    auto uploaded = DeviceScene::create(gpu(), scene, field->info, {.light = {.eye = vec3(80.0f, 1.0f, 60.0f)}});
+    auto uploaded = DeviceScene::create(gpu(), scene, field->info, {.light = {.sunShadow = 1024, .eye = vec3(80.0f, 1.0f, 60.0f)}});
     const auto light = makeLightField(gpu(), *field);
     ASSERT_TRUE(uploaded && light);
     const auto renderer = SceneRenderer::create(gpu(), *uploaded, *light, settingsFor());
