@@ -39,7 +39,7 @@ vec3 someLights(uint kind, Pixel p, vec3 point, vec3 geometric, uint first, uint
 {
     uint taken = min(push.samples, count);
     if (taken == 0u) return vec3(0.0);
-    float start = randomPair(uvec2(at), 0u, stream, frame.seed).x;
+    float start = pairOfFrame(uvec2(at), frame.seed, 1u, 0u, stream).x;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < taken; ++i)
     {

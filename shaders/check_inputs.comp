@@ -157,7 +157,7 @@ void main()
     if (abs(length(normal.xyz) - 1.0) > 0.05) atomicAdd(counts.uneven, 1u);
     if (!inUnit(min(base.r, min(base.g, base.b))) || !inUnit(max(base.r, max(base.g, base.b)))) atomicAdd(counts.colors, 1u);
     if (!inUnit(base.a)) atomicAdd(counts.metals, 1u);
-    if (!inUnit(normal.w) && !inUnit(normal.w - kRetro)) atomicAdd(counts.roughnesses, 1u);
+    if (!inUnit(roughnessOf(normal.w))) atomicAdd(counts.roughnesses, 1u);
     Known known = knownAt(world, eyeOf(g));
     if (known.probe == kNoProbe) return;
     atomicAdd(counts.known, 1u);

@@ -104,7 +104,7 @@ void main()
     {
         Pixel p = readPixel(at);
         terms = termsOf(p) | (p.surface ? kIsSurface : 0u);
-        pixelPlace[invocation] = vec4(p.position, p.brdf.roughness + (p.retro ? kRetro : 0.0));
+        pixelPlace[invocation] = vec4(p.position, lobeOf(p));
         pixelNormal[invocation] = p.normal;
         imageStore(packedPixels, at, uvec4(packedOf(p, terms & (kIsSurface - 1u)), 0u, 0u));
         if (terms != 0u)

@@ -30,7 +30,7 @@ void main()
     vec4 own = imageLoad(noisy, at);
     float reach = push.followRoughness != 0 ? filterReach(p.brdf.roughness) : kFilterReach;
     reach *= inversesqrt(float(frame.glossyRays)); // as the noise falls
-    if (kBlended) reach = max(reach * inversesqrt(max(own.a, 1.0)), min(reach, 2.0));
+    if (kBlended) reach = max(reach * inversesqrt(max(own.a, 1.0)), min(reach, 3.0));
     vec3 tint = kTerm == kTermGlossy && push.last != 0 && p.surface ? tintOf(readPixel(at)) : vec3(1.0);
     if (!p.surface || reach < float(push.stride))
     {

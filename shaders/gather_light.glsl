@@ -86,7 +86,7 @@ void main()
     float weights = 1e-30;
     Heaviest heaviest = Heaviest(uvec4(0u), vec4(0.0), 0.0);
     uint drawn = kNoProbe;
-    float lot = randomPair(uvec2(lookUp.at), 0u, 5u, frame.seed).x;
+    float lot = pairOfFrame(uvec2(lookUp.at), frame.seed, 1u, 0u, 5u).x;
     uint probe;
     float say;
     while (nextCandidate(candidates, probe, say))

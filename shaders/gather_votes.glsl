@@ -64,7 +64,7 @@ Candidates candidatesAt(ivec2 at, Pixel p, vec3 point, TangentFrame tangents)
     if (!canGather(point, p.normal)) return found;
     for (uint i = 0u; i < kLookUps; ++i)
     {
-        vec2 along = (randomPair(uvec2(at), i, 1u, frame.seed) - 0.5) * 2.0 * field.voxel;
+        vec2 along = (pairOfFrame(uvec2(at), frame.seed, kLookUps, i, 1u) - 0.5) * 2.0 * field.voxel;
         int reads = 0;
         uvec4 r = rankedProbesAt(point + along.x * tangents.tangent + along.y * tangents.bitangent + 0.5 * field.voxel * p.normal, reads);
         vote(found.votes, r.x);

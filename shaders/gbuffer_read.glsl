@@ -37,13 +37,16 @@ Pixel readPixel(ivec2 at)
     float size = depth + dot(abs(normal), vec4(1.0)) + dot(abs(base), vec4(1.0));
     p.surface = depth > 0.0 && size < 1e3 && dot(normal.xyz, normal.xyz) > 0.25;
     p.normal = frame.fieldFromNormals * normal.xyz;
-    p.retro = normal.w >= kRetro;
+    p.retro = isRetroreflective(normal.w);
     p.view = viewerOfLobes(p.normal, normalize(frame.eye - p.position), p.retro);
     p.brdf.baseColor = base.rgb;
     p.brdf.metallic = base.a;
-    p.brdf.roughness = p.retro ? normal.w - kRetro : normal.w;
+    p.brdf.roughness = roughnessOf(normal.w);
     return p;
 }
+
+/// Tells lobes apart: roughness, and kRetro as in the G-buffer.
+float lobeOf(Pixel p) { return p.brdf.roughness + (p.retro ? kRetro : 0.0); }
 
 float depthAt(ivec2 at) { return texelFetch(gDepth, clamp(at, ivec2(0), ivec2(frame.size) - 1), 0).r; }
 
@@ -86,7 +89,7 @@ struct Surroundings
     vec4 plane; // of clip space, not normalised; over the plane's point, in hundredths of the distance to the eye
     vec4 w;     // worldFromClip's last row
     vec3 normal;
-    float roughness;
+    float lobe; // lobeOf()
 };
 
 Surroundings surroundingsOf(Pixel p)
@@ -95,15 +98,15 @@ Surroundings surroundingsOf(Pixel p)
     s.plane = vec4(p.normal, -dot(p.normal, p.position)) * frame.worldFromClip * (100.0 / distance(p.position, frame.eye));
     s.w = vec4(0.0, 0.0, 0.0, 1.0) * frame.worldFromClip;
     s.normal = p.normal;
-    s.roughness = p.brdf.roughness;
+    s.lobe = lobeOf(p);
     return s;
 }
 
-/// How much a pixel shows the same surface, [0,1]: 0 across edges of depth, of the shading normal and of roughness.
+/// How much a pixel shows the same surface, [0,1]: 0 across edges of depth, of the shading normal and of its lobe.
 float likeness(Surroundings s, Pixel q)
 {
     float plane = dot(s.plane, q.clip) / dot(s.w, q.clip);
-    float rough = (s.roughness - q.brdf.roughness) * 8.0;
+    float rough = (s.lobe - lobeOf(q)) * 8.0;
     float facing = max(dot(s.normal, q.normal), 0.0);
     facing *= facing, facing *= facing, facing *= facing, facing *= facing; // to the 16th
     return exp(-plane * plane - rough * rough) * facing * facing;

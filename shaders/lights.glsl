@@ -57,7 +57,7 @@ float sunVisibility(GpuLight light, vec3 p, vec3 normal)
     {
         finer *= kFinerSun;
         vec2 within = abs(off * finer);
-        if (max(within.x, within.y) > kWithinFiner) break;
+        if (!(max(within.x, within.y) <= kWithinFiner)) break;
         level = l;
         finest = finer;
     }

@@ -8,8 +8,9 @@ layout(set = 1, binding = kPackedBinding, rg32ui) writeonly uniform uimage2D pac
 layout(set = 1, binding = kPackedBinding, rg32ui) readonly uniform uimage2D packedPixels;
 #endif
 
-// Depth as it is; the normal as kNormalBits of each side of the octahedral map, within 0.2 degrees; kRoughnessBits; the bits of its terms.
-const uint kNormalBits = 10u, kRoughnessBits = 32u - 2u * kNormalBits - kTermCount;
+// Depth as it is; from the lowest bit on those of its terms, the normal as kNormalBits of each side of the octahedral map, within 0.2 degrees, whether
+// it is retroreflective, and kRoughnessBits.
+const uint kNormalBits = 10u, kRetroBit = kTermCount + 2u * kNormalBits, kRoughnessBits = 31u - kRetroBit;
 const float kNormalSteps = float((1u << kNormalBits) - 2u); // even: axes are exact
 const float kRoughnessSteps = float((1u << kRoughnessBits) - 1u);
 
@@ -20,7 +21,7 @@ uvec2 packedOf(Pixel p, uint terms)
     if (terms == 0u) return uvec2(0u);
     uvec2 uv = uvec2(octahedralFromDirection(p.normal) * kNormalSteps + 0.5);
     uint roughness = uint(clamp(p.brdf.roughness, 0.0, 1.0) * kRoughnessSteps + 0.5);
-    return uvec2(floatBitsToUint(p.clip.z), terms | (uv.x << kTermCount) | (uv.y << (kTermCount + kNormalBits)) | (roughness << (32u - kRoughnessBits)));
+    return uvec2(floatBitsToUint(p.clip.z), terms | (uv.x << kTermCount) | (uv.y << (kTermCount + kNormalBits)) | (p.retro ? 1u << kRetroBit : 0u) | (roughness << (32u - kRoughnessBits)));
 }
 
 #else
@@ -37,7 +38,7 @@ Pixel readPacked(ivec2 at, out uint terms)
     p.position = world.xyz / world.w;
     p.normal = directionFromOctahedral(vec2(bitfieldExtract(word.y, int(kTermCount), int(kNormalBits)), bitfieldExtract(word.y, int(kTermCount + kNormalBits), int(kNormalBits))) / kNormalSteps);
     p.view = vec3(0.0);
-    p.retro = false;
+    p.retro = bitfieldExtract(word.y, int(kRetroBit), 1) != 0u;
     p.brdf = BrdfSurface(vec3(0.0), 0.0, float(word.y >> (32u - kRoughnessBits)) / kRoughnessSteps);
     return p;
 }

@@ -27,13 +27,13 @@ struct Sample
 Sample sampleOf(ivec2 at, Pixel p, TangentFrame tangents, uint ray)
 {
     if (kTerm == kTermDiffuse)
-        return Sample(normalize(toWorld(tangents, sampleCosine(randomPair(uvec2(at), ray, 4u, frame.seed)))), vec3(1.0));
+        return Sample(normalize(toWorld(tangents, sampleCosine(pairOfFrame(uvec2(at), frame.seed, frame.glossyRays, ray, 4u)))), vec3(1.0));
     vec3 view = toTangent(tangents, p.view);
     view.z = max(view.z, 1e-4); // a shading normal may turn away from the eye
     const bool mirror = kTerm == kTermMirror;
     float alpha = ggxAlpha(p.brdf.roughness);
     BrdfLobes lobes = lobesAt(p.brdf, view.z);
-    vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), alpha, randomPair(uvec2(at), ray, 0u, frame.seed));
+    vec3 halfway = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(normalize(view), alpha, pairOfFrame(uvec2(at), frame.seed, frame.glossyRays, ray, 0u));
     vec3 direction = reflect(-view, halfway);
     if (direction.z <= 0.0) return Sample(vec3(0.0), vec3(0.0));
     vec3 color = lobes.atNormal + lobes.atEdge * schlick(dot(view, halfway));

@@ -13,8 +13,7 @@ using gpu::kLinkSky;
 using gpu::kLinkSurface;
 using gpu::kLinkTexelBits;
 using gpu::kMostSlope;
-using gpu::kSampleBits;
-using gpu::randomPair;
+using gpu::pairOfRay;
 
 /// The shared text of links.
 struct LinkText : LightFieldTwin<float>

@@ -66,42 +66,40 @@ uint32_t voxelShift(const FieldData& lit, double area)
 }
 
 /// Places on surfaces that no texel shows.
-std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& triangles, double spacing)
+std::vector<Place> hiddenPlaces(const FieldData& lit, const TriangleGather& triangles, std::span<const Outside> outside, double spacing)
 {
     const Scene& scene = triangles.scene();
-    std::vector<uint32_t> all(scene.triangles.size());
-    std::iota(all.begin(), all.end(), 0u);
-    const std::vector<Outside> outside = outsideOf(scene, all);
-    std::vector<std::vector<Place>> found(all.size());
-    parallelFor(all.size(),
-                [&](size_t triangle)
+    std::vector<std::vector<Place>> found(outside.size());
+    parallelFor(
+        outside.size(),
+        [&](size_t triangle)
+        {
+            Text text(lit);
+            Random random(kHiddenStream, uint64_t(triangle));
+            const glm::uvec3 corner = scene.triangles[triangle];
+            const vec3 a = scene.positions[corner.x], ab = scene.positions[corner.y] - a, ac = scene.positions[corner.z] - a;
+            const vec3 across = glm::cross(ab, ac);
+            if (!(glm::length(across) > 0.0f)) return;
+            const double wanted = areaOf(scene, uint32_t(triangle)) / (spacing * spacing);
+            const auto count = uint64_t(wanted + double(random.uniform()));
+            for (uint64_t i = 0; i < count; ++i)
+            {
+                vec2 share = random.uniform2();
+                if (share.x + share.y > 1.0f) share = 1.0f - share;
+                const auto uv = [&](uint32_t vertex) { return scene.uvs[vertex]; };
+                const SurfacePoint look =
+                    evaluateMaterial(scene, scene.triangleMaterial[triangle],
+                                     uv(corner.x) + share.x * (uv(corner.y) - uv(corner.x)) + share.y * (uv(corner.z) - uv(corner.x)));
+                const vec3 on = (a + share.x * ab + share.y * ac - lit.info.origin) / lit.info.scale;
+                for (const Outside side : {Outside::front, Outside::back})
                 {
-                    Text text(lit);
-                    Random random(kHiddenStream, uint64_t(triangle));
-                    const glm::uvec3 corner = scene.triangles[triangle];
-                    const vec3 a = scene.positions[corner.x], ab = scene.positions[corner.y] - a, ac = scene.positions[corner.z] - a;
-                    const vec3 across = glm::cross(ab, ac);
-                    if (!(glm::length(across) > 0.0f)) return;
-                    const double wanted = areaOf(scene, uint32_t(triangle)) / (spacing * spacing);
-                    const auto count = uint64_t(wanted + double(random.uniform()));
-                    for (uint64_t i = 0; i < count; ++i)
-                    {
-                        vec2 share = random.uniform2();
-                        if (share.x + share.y > 1.0f) share = 1.0f - share;
-                        const auto uv = [&](uint32_t vertex) { return scene.uvs[vertex]; };
-                        const SurfacePoint look = evaluateMaterial(scene, scene.triangleMaterial[triangle],
-                                                                   uv(corner.x) + share.x * (uv(corner.y) - uv(corner.x)) +
-                                                                       share.y * (uv(corner.z) - uv(corner.x)));
-                        const vec3 on = (a + share.x * ab + share.y * ac - lit.info.origin) / lit.info.scale;
-                        for (const Outside side : {Outside::front, Outside::back})
-                        {
-                            if (outside[triangle] != Outside::both && outside[triangle] != side) continue;
-                            const vec3 normal = glm::normalize(float(side) * across), point = on + triangles.offset() * normal;
-                            if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal))
-                                found[triangle].push_back({0, point, normal, triangles.grazingOf(look.metallic, look.roughness), 0.0f});
-                        }
-                    }
-                });
+                    if (outside[triangle] != Outside::both && outside[triangle] != side) continue;
+                    const vec3 normal = glm::normalize(float(side) * across), point = on + triangles.offset() * normal;
+                    if (text.keyOf(on, normal) != 0 && text.isHidden(on, normal))
+                        found[triangle].push_back({0, point, normal, triangles.grazingOf(look.metallic, look.roughness), 0.0f, false});
+                }
+            }
+        });
     std::vector<Place> places;
     for (const auto& some : found) places.insert(places.end(), some.begin(), some.end());
     return places;
@@ -157,8 +155,7 @@ void arrange(HiddenPlaces& of, std::span<const uint32_t> order, std::span<const 
 
 /// Mean light at some places of one key; 0 where what sees them no probe sees either, unless they are enclosed: the far
 /// side of an outer wall.
-/// @param side  of its voxel, field units
-uint32_t lightOf(std::span<const Place> places, float side, Text& text, const TriangleGather& triangles, const TriangleGather::Sent& sent)
+uint32_t lightOf(std::span<const Place> places, Text& text, const TriangleGather& triangles, const TriangleGather::Sent& sent)
 {
     vec3 sum(0.0f);
     float weights = 0.0f;
@@ -167,11 +164,11 @@ uint32_t lightOf(std::span<const Place> places, float side, Text& text, const Tr
     {
         const Place& place = places[i];
         // By other rays than those that told its weight: the same would favour what happens to be bright.
-        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent, kTight * side);
+        const auto got = triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfPlace, {place.key, i}, sent);
         if (!got.known) continue;
         sum += place.weight * (got.straight + got.bounced);
         weights += place.weight;
-        seen = seen || got.seen > 0.0f;
+        seen = seen || place.seen || got.seen > 0.0f;
         enclosed = enclosed && got.enclosed;
     }
     return weights > 0.0f && (seen || enclosed) ? text.packKnownLight(sum / weights) : 0;
@@ -219,8 +216,8 @@ std::vector<uint32_t> tableOf(std::span<const uint32_t> keys, std::span<const ui
 /// Of one key's places, of some all over the voxel, at most kPlacesOfKey: those before which something lies that a probe sees, and those in
 /// spaces of their own, as a dark room beside a lit one. Nobody looks at what is sealed up, in a moulding or between two layers of a wall,
 /// or within what stands in one another.
-/// @param side  of the voxel, field units
-std::vector<Place> chosenOf(std::span<const Place> places, float side, const TriangleGather& triangles, const TriangleGather::Sent& sent)
+std::vector<Place> chosenOf(std::span<const Place> places, const TriangleGather& triangles, const TriangleGather::Sent& sent,
+                            const TriangleGather::Openness& openness)
 {
     std::vector<Place> chosen;
     const size_t tried = std::min<size_t>(places.size(), kTried);
@@ -230,23 +227,25 @@ std::vector<Place> chosenOf(std::span<const Place> places, float side, const Tri
         if (i >= tried) continue;
         const Place& place = places[i * places.size() / tried];
         const auto got =
-            triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfTried, {place.key, kPlacesOfKey + i}, sent, kTight * side);
+            triangles.gatherAt(place.point, place.normal, place.grazing, kRaysOfTried, {place.key, kPlacesOfKey + i}, sent, openness);
         if (!got.known || !(got.seen > 0.0f || got.open > kOpen)) continue;
         chosen.push_back(place);
         chosen.back().weight = got.open > kOpen ? 1.0f : std::min(kWholly * got.seen, 1.0f);
+        chosen.back().seen = got.seen > 0.0f;
     }
     return chosen;
 }
 
-void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent)
+void choosePlaces(HiddenPlaces& of, const FieldData& lit, const TriangleGather& triangles, const TriangleGather::Sent& sent,
+                  std::span<const Outside> outside)
 {
-    const float side = lit.info.voxel * float(1u << of.shift);
+    const TriangleGather::Openness openness{kTight * lit.info.voxel * float(1u << of.shift), outside};
     std::vector<std::vector<Place>> chosen(of.keys.size());
     parallelFor(chosen.size(),
                 [&](size_t i)
                 {
                     const auto [first, end] = of.keys[i];
-                    chosen[i] = chosenOf(std::span(of.places).subspan(first, end - first), side, triangles, sent);
+                    chosen[i] = chosenOf(std::span(of.places).subspan(first, end - first), triangles, sent, openness);
                 });
     of.places.clear();
     of.keys.clear();
@@ -268,7 +267,10 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, const T
     lit.info.hidden = shift; // keys are of these voxels; there is no table yet
     const double side = double(lit.info.voxel) * lit.info.scale * double(1u << shift);
     HiddenPlaces found;
-    found.places = hiddenPlaces(lit, triangles, side / std::sqrt(kPointsOfVoxel));
+    std::vector<uint32_t> all(scene.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const std::vector<Outside> outside = outsideOf(scene, all);
+    found.places = hiddenPlaces(lit, triangles, outside, side / std::sqrt(kPointsOfVoxel));
     // From fine voxels to coarse ones: places of one voxel keep the order of the finer ones, so that few of them lie all over it.
     std::vector<uint32_t> order(found.places.size()), keys;
     std::iota(order.begin(), order.end(), 0u);
@@ -279,7 +281,7 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, const T
     }
     arrange(found, order, keys);
     found.shift = std::exchange(lit.info.hidden, 0u); // that look-ups do without
-    choosePlaces(found, lit, triangles, sent);
+    choosePlaces(found, lit, triangles, sent, outside);
     return found;
 }
 
@@ -287,14 +289,13 @@ HiddenPlaces findPlaces(FieldData& lit, const TriangleGather& triangles, const T
 std::vector<uint32_t> lightOfKeys(const FieldData& lit, const HiddenPlaces& of, const TriangleGather& triangles,
                                   const TriangleGather::Sent& sent)
 {
-    const float wide = lit.info.voxel * float(1u << of.shift);
     std::vector<uint32_t> found(of.keys.size());
     parallelFor(found.size(),
                 [&](size_t i)
                 {
                     Text text(lit);
                     const auto [first, end] = of.keys[i];
-                    found[i] = lightOf(std::span(of.places).subspan(first, end - first), wide, text, triangles, sent);
+                    found[i] = lightOf(std::span(of.places).subspan(first, end - first), text, triangles, sent);
                 });
     return found;
 }

@@ -18,6 +18,7 @@ struct HiddenPlaces
         vec3 normal;
         float grazing; // TriangleGather::grazingOf()
         float weight;  // of its light
+        bool seen;     // something before it is, by a probe
     };
     uint32_t shift = 0;                          // log2 of finest voxels a side
     std::vector<Place> places;                   // by key

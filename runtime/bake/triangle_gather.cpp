@@ -30,7 +30,7 @@ using gpu::kLinkSurface;
 using gpu::kLinkTexelBits;
 using gpu::kMostShadowRays;
 using gpu::kMostSlope;
-using gpu::kSampleBits;
+using gpu::pairOfRay;
 using gpu::randomPair;
 
 constexpr float kFar = 1e6f; // field units, in place of the length of a ray that nothing stops
@@ -59,6 +59,7 @@ struct Gatherer : LightFieldTwin<float>
     std::array<vec3, gpu::kReflectionsCounted> brought{}; // light of emitters and sky that the rays have brought by reflections, summed
     float met = 0.0f;                                     // length of the last ray to what it met first; kBack, kSeen
     std::span<float> lengths;                             // of each ray, like `met`; empty: not asked for
+    std::span<const Outside> outside;                     // TriangleGather::Openness
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
              std::span<const glm::vec4> tints, std::span<const float> ofMaterials, const EmitterPatches& ofEmitters,
@@ -104,7 +105,7 @@ struct Gatherer : LightFieldTwin<float>
         {
             const auto hit = triangles.closest(from, direction);
             if (turn == 0 && hit) t = hit->t / field.scale;
-            if (turn == 0) met = hit && dot(geometricNormal(triangles.scene(), hit->triangle), direction) > 0.0f ? kBack : t;
+            if (turn == 0) met = hit && isInner(hit->triangle, direction) ? kBack : t;
             if (!hit && turn == 0) return kLinkSky;
             if (!hit)
             {
@@ -480,7 +481,14 @@ struct Gatherer : LightFieldTwin<float>
         return false;
     }
 
-    static constexpr float kBack = -1.0f, kSeen = 2.0f * kFar; // in place of a length: to the back of a triangle, to what a probe sees
+    static constexpr float kBack = -1.0f, kSeen = 2.0f * kFar; // in place of a length: to a side that isn't outside, to what a probe sees
+    /// Whether a ray meets a side that isn't outside.
+    bool isInner(uint32_t triangle, vec3 direction) const
+    {
+        const float outer = !outside.empty() && outside[triangle] == Outside::back ? -1.0f : 1.0f;
+        return outer * dot(geometricNormal(triangles.scene(), triangle), direction) > 0.0f;
+    }
+
     /// TriangleGather::Point::open.
     float openShare(float near) const
     {
@@ -692,7 +700,7 @@ TriangleGather::FinePoints TriangleGather::gatherFiner(uint32_t probe, glm::uvec
 }
 
 TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent,
-                                               float near) const
+                                               const Openness& openness) const
 {
     std::vector<uint32_t> links(rays);
     std::vector<float> lengths(rays);
@@ -700,6 +708,7 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
     fewer.rays = rays;
     twin::Gatherer text(*triangles, *field, *lights, fewer, gap, palette, straight, patches, links);
     text.lengths = lengths;
+    text.outside = openness.outside;
     const auto got = text.gatherAt(point, normal, normal, sample, grazing);
     return {got.light,
             text.broughtTo(links, sent) + text.allBrought(got.ends),
@@ -708,7 +717,7 @@ TriangleGather::Point TriangleGather::gatherAt(vec3 point, vec3 normal, float gr
             got.reach,
             !text.knowsTooLittle(got.ends, got.asked),
             text.seenShare(point, normal, sample, links, grazing),
-            text.openShare(near),
+            text.openShare(openness.near),
             std::ranges::find(links, gpu::kLinkSky) == links.end()};
 }
 

@@ -7,6 +7,7 @@
 #include "runtime/bake/emitter_patches.h"
 #include "runtime/field/field_data.h"
 #include "runtime/scene/lights.h"
+#include "scene/closed_parts.h"
 #include "scene/exact_rays.h"
 #include "shaders/shared/bake_passes.h"
 
@@ -69,7 +70,7 @@ public:
         float room = 0.0f, reach = 0.0f;    // harmonic mean of the lengths of its rays, of those that end at a surface; field units
         bool known = false;                 // enough of its rays found something
         float seen = 0.0f;                  // share of them that meet what a probe sees, or pass before one on their way to the sky
-        float open = 0.0f;                  // share of them that go far, of a place that isn't within something solid: see gatherAt()
+        float open = 0.0f;                  // share of them that go far, of a place that isn't within something solid: see Openness
         bool enclosed = false;              // none of them the sky
     };
     /// At what the 2^kFineLog squared finer texels of a texel see.
@@ -77,13 +78,20 @@ public:
     using FinePoints = std::array<Point, size_t(1) << (2 * gpu::kFineLog)>;
     FinePoints gatherFiner(uint32_t probe, glm::uvec3 texel, const Sent& sent) const;
 
+    /// What tells how open a place is.
+    struct Openness
+    {
+        float near;                       // field units, beyond which a ray goes far
+        std::span<const Outside> outside; // of the scene's triangles: a ray that meets another side comes from within something solid; of
+                                          // `both` it is the back
+    };
     /// At a place on a surface that no texel need show.
     /// @param point   field space, off it by gap()
     /// @param normal   unit, on the side that is lit
     /// @param grazing  of its surface, see grazingOf()
-    /// @param rays    at most Desc's
-    /// @param near    field units, beyond which a ray goes far
-    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent, float near) const;
+    /// @param openness  to find Point::open by; without it isn't asked for
+    Point gatherAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample, const Sent& sent,
+                   const Openness& openness = {}) const;
     /// Where the rays of such a place end.
     std::vector<uint32_t> linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const;
     /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in

@@ -118,7 +118,7 @@ Status Denoiser::makeHistory(const Buffer& frame, const GpuImage& light, const G
         histories[i].blend = std::move(*set);
     }
     const VkDescriptorSetLayout layouts[] = {desc.firstSet, histories[0].blend.layout()};
-    const ShaderConstant constants[] = {desc.tiles->constant(), {gpu::kTermId, desc.term}};
+    const ShaderConstant constants[] = {desc.tiles->constant(), {gpu::kTermId, desc.term}, {gpu::kMovingId, desc.moving ? 1u : 0u}};
     auto built = Pipeline::compute(*gpu, temporal_comp, layouts, 0, constants);
     if (!built) return built.error();
     temporal = std::move(*built);

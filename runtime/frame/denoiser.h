@@ -17,6 +17,7 @@ public:
         uint32_t term = gpu::kTermGlossy;                // only its pixels are read and written
         bool followRoughness = false;    // a pixel's reach shrinks with its roughness, to nothing for a mirror: for the glossy term
         bool temporal = false;           // blend with the frames before, as FrameView::follows allows; 24 bytes more a pixel
+        bool moving = false;             // what the term's light shows may move while the eye is still: its history is short
         const TileList* tiles = nullptr; // needed
         uint32_t width = 0, height = 0;
     };

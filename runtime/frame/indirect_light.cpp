@@ -262,8 +262,9 @@ Status IndirectLight::State::make()
     if (auto s = makeFill(gpu::kTermGlossy, glossyImage, glossyFill, glossyFillSet); !s) return s;
     if (!effects.denoise) return success();
     if (auto s = makeImage(scratch, kLightFormat, "scratch of the glossy filter"); !s) return s;
-    auto made = Denoiser::create(*gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, tileList.get(), desc.width, desc.height},
-                                 frame, glossyImage, scratch);
+    auto made = Denoiser::create(
+        *gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, desc.movingShapes > 0, tileList.get(), desc.width, desc.height},
+        frame, glossyImage, scratch);
     if (!made) return made.error();
     denoiser = std::move(*made);
     return success();

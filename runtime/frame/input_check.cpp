@@ -236,7 +236,7 @@ void addNormals(Faults& faults, const gpu::InputCounts& counts)
 
 void addMaterials(Faults& faults, const gpu::InputCounts& counts)
 {
-    const auto outside = [&](uint32_t pixels, const char* what, const char* remedy)
+    const auto outside = [&](uint32_t pixels, const char* what, const std::string& remedy)
     {
         if (share(pixels, counts.shown[0]) > kSome)
             faults.push_back(
@@ -244,7 +244,8 @@ void addMaterials(Faults& faults, const gpu::InputCounts& counts)
     };
     outside(counts.colors, "a base colour", "divide by 255 where it is in bytes, and leave light out of it");
     outside(counts.metals, "a metallic (a of the base colour)", "it is 0 for dielectrics and 1 for metals");
-    outside(counts.roughnesses, "a roughness (w of the normal)", "it is perceptual roughness, as glTF has it");
+    outside(counts.roughnesses, "a roughness (w of the normal)",
+            fmt::format("it is perceptual roughness, as glTF has it, and {:g} more where a surface is retroreflective", gpu::kRetro));
     uint32_t best = 0;
     for (uint32_t meaning = 1; meaning < gpu::kColorMeanings; ++meaning)
         if (counts.tint[meaning] > counts.tint[best]) best = meaning;

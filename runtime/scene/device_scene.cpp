@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <span>
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "spirv/shadow_masked_frag.h"
 #include "spirv/shadow_masked_vert.h"
@@ -23,6 +23,12 @@ namespace
 
 constexpr float kNearBorder = 0.25f; // of the width of the finest map about an eye: as far as the eye may go from its middle
 
+std::string eyeFault(vec3 eye)
+{
+    if (finite(eye)) return {};
+    return fmt::format("The eye {}, {}, {} that the sun's maps are to be about isn't a place; give it in metres", eye.x, eye.y, eye.z);
+}
+
 std::string settingsFault(const DeviceSceneDesc& desc)
 {
     const LightSettings& light = desc.light;
@@ -31,9 +37,9 @@ std::string settingsFault(const DeviceSceneDesc& desc)
     for (const auto& [name, knob, value] : {std::tuple{knobs::emitterSamples.name, emitters, light.emitterSamples},
                                             std::tuple{knobs::skySamples.name, sky, light.skySamples}})
         if (!knob.inRange(value)) return knob_words::fault(name, knobText(value), rangeText(knob));
-    return firstFault({faultOf(knobs::textureSize, desc.maxTextureSize), faultOf(knobs::sunShadow, light.sunShadow),
-                       faultOf(knobs::pointShadow, light.pointShadow), faultOf(knobs::emitterShadow, light.emitterShadow),
-                       faultOf(knobs::skyShadow, light.skyShadow)});
+    return firstFault({light.eye ? eyeFault(*light.eye) : "", faultOf(knobs::textureSize, desc.maxTextureSize),
+                       faultOf(knobs::sunShadow, light.sunShadow), faultOf(knobs::pointShadow, light.pointShadow),
+                       faultOf(knobs::emitterShadow, light.emitterShadow), faultOf(knobs::skyShadow, light.skyShadow)});
 }
 
 Result<GpuImage> depthArray(Gpu& gpu, uint32_t size, uint32_t layers, VkFormat format, const char* what)
@@ -47,8 +53,10 @@ Result<GpuImage> depthArray(Gpu& gpu, uint32_t size, uint32_t layers, VkFormat f
     return gpu.makeImage(desc, what);
 }
 
+} // namespace
+
 /// The pipelines that draw depth alone, for one depth format.
-struct DepthPipelines
+struct DeviceScene::DepthPipelines
 {
     Pipeline opaque, masked;
 
@@ -74,8 +82,11 @@ struct DepthPipelines
     }
 };
 
-void renderDepth(Gpu& gpu, VkCommandBuffer cmd, const DepthPipelines& pipelines, const SceneMesh& mesh, VkDescriptorSet sceneSet,
-                 const GpuImage& maps, uint32_t layer, const gpu::SceneView& view, SceneDraws& draws)
+namespace
+{
+
+void renderDepth(Gpu& gpu, VkCommandBuffer cmd, const DeviceScene::DepthPipelines& pipelines, const SceneMesh& mesh,
+                 VkDescriptorSet sceneSet, const GpuImage& maps, uint32_t layer, const gpu::SceneView& view, SceneDraws& draws)
 {
     VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     depth.imageView = maps.layerView(layer);
@@ -155,11 +166,11 @@ Status drawMaps(Gpu& gpu, const LightList& lights, const SceneMesh& triangles, c
 {
     // A pipeline names the format of the depth it draws to: one for each format in use.
     constexpr VkFormat kFormats[] = {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM};
-    DepthPipelines pipelines[2];
+    DeviceScene::DepthPipelines pipelines[2];
     for (size_t i = 0; i < std::size(kFormats); ++i)
     {
         if (std::ranges::none_of(kinds, [&](const MapKind& kind) { return kind.maps && kind.format == kFormats[i]; })) continue;
-        auto made = DepthPipelines::create(gpu, set.layout(), kFormats[i], triangles.hasMasked());
+        auto made = DeviceScene::DepthPipelines::create(gpu, set.layout(), kFormats[i], triangles.hasMasked());
         if (!made) return made.error();
         pipelines[i] = std::move(*made);
     }
@@ -176,7 +187,7 @@ Status drawMaps(Gpu& gpu, const LightList& lights, const SceneMesh& triangles, c
                                     : light.type == gpu::kLightSky       ? 1
                                     : light.type == gpu::kLightEmitter   ? 3
                                                                          : 2];
-        const DepthPipelines& pipeline = pipelines[kind.format == kFormats[0] ? 0 : 1];
+        const DeviceScene::DepthPipelines& pipeline = pipelines[kind.format == kFormats[0] ? 0 : 1];
         const std::vector<gpu::SceneView> views = shadowViews(light, lights.header);
         auto status = gpu.submit(
             [&](VkCommandBuffer cmd)
@@ -345,33 +356,47 @@ Status DeviceScene::makeShadowMaps(Gpu& gpu, const Progress& progress)
 
 Status DeviceScene::lookFrom(Gpu& gpu, vec3 eye)
 {
-    gpu::LightsHeader& header = lightList.header;
-    if (header.sunLevels <= 1) return success();
-    const vec3 at = (eye - origin) / scale;
-    float finest = std::numeric_limits<float>::infinity(); // width of a map, field units
-    for (const gpu::GpuLight& light : lightList.lights)
-        if (light.type == gpu::kLightDirectional)
-            finest = std::min(finest, light.shadowTexel * float(lightList.settings.sunShadow) /
-                                          std::pow(gpu::kFinerSun, float(header.sunLevels - 1)));
-    if (glm::distance(at, header.eye) < kNearBorder * finest) return success();
-    header.eye = at;
-    if (auto status = gpu.upload(lightBuffer, 0, std::as_bytes(std::span(&header, 1))); !status) return status;
-    const auto pipelines = DepthPipelines::create(gpu, set.layout(), sunMaps.desc().format, triangles.hasMasked());
-    if (!pipelines) return pipelines.error();
+    if (const std::string fault = eyeFault(eye); !fault.empty()) return Error{ErrorCode::badArgument, fault};
+    if (lightList.header.sunLevels <= 1) return success();
+    gpu::LightsHeader moved = lightList.header;
+    moved.eye = (eye - origin) / scale;
+    const float finest = std::pow(gpu::kFinerSun, float(moved.sunLevels - 1));
+    const auto isSun = [](const gpu::GpuLight& light) { return light.type == gpu::kLightDirectional; };
+    // Across and along each map apart: of a long scene they are narrow one way.
+    const vec3 way = moved.eye - lightList.header.eye;
+    const auto isNear = [&](const gpu::GpuLight& light)
+    {
+        const vec2 off(glm::dot(vec3(light.shadowX), way), glm::dot(vec3(light.shadowY), way));
+        return !isSun(light) || finest * std::max(std::abs(off.x), std::abs(off.y)) < kNearBorder;
+    };
+    if (std::ranges::all_of(lightList.lights, isNear)) return success();
+    if (!sunPipelines)
+    {
+        auto made = DepthPipelines::create(gpu, set.layout(), sunMaps.desc().format, triangles.hasMasked());
+        if (!made) return made.error();
+        sunPipelines = std::make_shared<const DepthPipelines>(std::move(*made));
+    }
     SceneDraws draws;
-    return gpu.submit(
-        [&](VkCommandBuffer cmd)
+    const auto record = [&](VkCommandBuffer cmd)
+    {
+        // After frames that read where the eye was, which are done with it wherever they did; before those to come.
+        memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_PIPELINE_STAGE_2_TRANSFER_BIT, 0);
+        gpu.vk.CmdUpdateBuffer(cmd, lightBuffer.handle(), 0, sizeof(moved), &moved);
+        memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+        toAttachment(gpu, cmd, sunMaps, true);
+        for (const gpu::GpuLight& light : lightList.lights)
         {
-            toAttachment(gpu, cmd, sunMaps, true);
-            for (const gpu::GpuLight& light : lightList.lights)
-            {
-                if (light.type != gpu::kLightDirectional) continue;
-                const std::vector<gpu::SceneView> views = shadowViews(light, header);
-                for (uint32_t v = 1; v < views.size(); ++v) // the first is the whole scene's
-                    renderDepth(gpu, cmd, *pipelines, triangles, set.handle(), sunMaps, uint32_t(light.shadowLayer) + v, views[v], draws);
-            }
-            toSampled(gpu, cmd, sunMaps);
-        });
+            if (!isSun(light)) continue;
+            const std::vector<gpu::SceneView> views = shadowViews(light, moved);
+            for (uint32_t v = 1; v < views.size(); ++v) // the first is the whole scene's
+                renderDepth(gpu, cmd, *sunPipelines, triangles, set.handle(), sunMaps, uint32_t(light.shadowLayer) + v, views[v], draws);
+        }
+        toSampled(gpu, cmd, sunMaps);
+    };
+    if (auto status = gpu.submit(record); !status) return status;
+    lightList.header = moved;
+    return success();
 }
 
 } // namespace sconce

@@ -38,7 +38,8 @@ public:
                                       const Progress& progress = {});
 
     /// After an eye that has moved: where it is near the border of the finest maps about it (LightSettings::eye), these are drawn anew
-    /// about it (submits and waits). Nothing to do for a scene without. Errors: deviceFailure, outOfMemory.
+    /// about it (submits and waits, after all that was submitted to the queue before). Nothing to do for a scene without. Errors:
+    /// badArgument (an eye that isn't finite), deviceFailure, outOfMemory; the maps are then about where they were.
     Status lookFrom(Gpu& gpu, vec3 eye);
 
     /// What shaders/scene.glsl declares; sampled by fragment and compute shaders.
@@ -47,6 +48,7 @@ public:
     const SceneMesh& mesh() const { return triangles; }
     const LightList& lights() const { return lightList; }
     uint64_t deviceBytes() const { return bytes; }
+    struct DepthPipelines; // device_scene.cpp
 
 private:
     explicit DeviceScene(SceneMesh mesh) : triangles(std::move(mesh)) {}
@@ -58,6 +60,7 @@ private:
     vec3 origin{0.0f}; // of field space, metres
     float scale = 1.0f;
     GpuImage sunMaps, skyMaps, pointMaps, emitterMaps, noMaps;
+    std::shared_ptr<const DepthPipelines> sunPipelines; // from the first time that finer maps are drawn anew
     Sampler textureSampler, smoothCompare, nearestCompare;
     DescriptorSet set;
     uint64_t bytes = 0;

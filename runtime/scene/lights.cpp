@@ -151,8 +151,14 @@ void addSky(const Scene& scene, uint32_t count, LightList& list)
     }
 }
 
+/// Halves the size of maps until all of them take at most kShadowBytes.
+void limitMaps(uint32_t& size, uint32_t layers, uint32_t texelBytes)
+{
+    while (size > 32 && uint64_t(layers) * size * size * texelBytes > kShadowBytes) size /= 2;
+}
+
 /// How many maps a directional light has, so that the finest one's texels are no wider than some, as far as the maps of all such lights
-/// keep the size that is asked for.
+/// keep their size.
 /// @param texel  of the map of the whole scene, metres
 uint32_t sunLevels(float texel, uint32_t suns, uint32_t size)
 {
@@ -165,17 +171,18 @@ uint32_t sunLevels(float texel, uint32_t suns, uint32_t size)
 }
 
 /// Gives directional lights maps about the eye.
-void addFinerSuns(const gpu::LightFieldInfo& space, const LightSettings& settings, LightList& list)
+void addFinerSuns(const gpu::LightFieldInfo& space, vec3 eye, LightList& list)
 {
+    const uint32_t size = list.settings.sunShadow;
     float texel = 0.0f;
     for (gpu::GpuLight light : list.lights)
     {
         if (light.type != gpu::kLightDirectional) continue;
-        fitDirectional(light, space, settings.sunShadow);
+        fitDirectional(light, space, size);
         texel = std::max(texel, light.shadowTexel * space.scale);
     }
-    list.header.sunLevels = sunLevels(texel, list.sunLayers, settings.sunShadow);
-    list.header.eye = (*settings.eye - space.origin) / space.scale;
+    list.header.sunLevels = sunLevels(texel, list.sunLayers, size);
+    list.header.eye = (eye - space.origin) / space.scale;
     list.sunLayers *= list.header.sunLevels;
     for (gpu::GpuLight& light : list.lights)
         if (light.type == gpu::kLightDirectional) light.shadowLayer *= int(list.header.sunLevels);
@@ -218,19 +225,15 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
     list.header.pointNear = 1e-4f * space.diagonal;
     list.header.sunLevels = 1;
     addDelta(scene, space, list);
-    if (settings.eye) addFinerSuns(space, settings, list);
+    list.settings = settings;
+    limitMaps(list.settings.sunShadow, list.sunLayers, 4);
+    if (settings.eye) addFinerSuns(space, *settings.eye, list);
     addEmitters(scene, space, settings.emitterSamples, settings.lamps, list);
     addSky(scene, settings.skySamples, list);
     if (settings.areaShadows) addAreaShadows(list);
-    list.settings = settings;
-    const auto limit = [](uint32_t& size, uint32_t layers, uint32_t texelBytes)
-    {
-        while (size > 32 && uint64_t(layers) * size * size * texelBytes > kShadowBytes) size /= 2;
-    };
-    limit(list.settings.sunShadow, list.sunLayers, 4);
-    limit(list.settings.skyShadow, list.skyLayers, 2);
-    limit(list.settings.pointShadow, list.pointLayers, 4);
-    limit(list.settings.emitterShadow, list.emitterLayers, 4);
+    limitMaps(list.settings.skyShadow, list.skyLayers, 2);
+    limitMaps(list.settings.pointShadow, list.pointLayers, 4);
+    limitMaps(list.settings.emitterShadow, list.emitterLayers, 4);
     for (gpu::GpuLight& light : list.lights)
     {
         if (light.type == gpu::kLightDirectional)

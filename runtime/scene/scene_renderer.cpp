@@ -194,7 +194,7 @@ Status SceneRenderer::makeDiffuse()
         areaSet.write(gpu::kAreaDiffuseBinding, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
         areaSet.write(gpu::kTileBinding, indirect->state().tileList->buffer());
     }
-    const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, indirect->state().tileList.get(),
+    const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, false, indirect->state().tileList.get(),
                               settings.width, settings.height};
     auto made = Denoiser::create(gpu, desc, indirect->state().frame, indirect->state().diffuseImage, filterScratch());
     if (!made) return made.error();
@@ -551,8 +551,7 @@ Result<RenderedFrame> SceneRenderer::read()
         std::memcpy(frame.counts.data(), counts->data(), pixels * sizeof(glm::uvec4));
     }
     if (auto s = colors(frame.normal, normalRoughness, read, &frame.roughness); !s) return s.error();
-    for (float& roughness : frame.roughness)
-        if (roughness >= gpu::kRetro) roughness -= gpu::kRetro;
+    for (float& roughness : frame.roughness) roughness = gpu::roughnessOf(roughness);
     std::vector<float> metallic;
     if (auto s = colors(frame.albedo, baseColorMetallic, read, &metallic); !s) return s.error();
     std::vector<vec3> depths;

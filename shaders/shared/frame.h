@@ -60,6 +60,10 @@ struct TileRuns
 };
 SCONCE_CHECK_SIZE(TileRuns, 16);
 
+/// Of the w of a G-buffer's normal: the roughness of its lobes, whose viewer is viewerOfLobes() where it is retroreflective.
+SCONCE_FN bool isRetroreflective(float w) { return w >= kRetro; }
+SCONCE_FN float roughnessOf(float w) { return isRetroreflective(w) ? w - kRetro : w; }
+
 SCONCE_STRUCTS_END
 
 #ifndef __cplusplus

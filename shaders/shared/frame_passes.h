@@ -66,7 +66,7 @@ const uint kLookUpKindId = 21u;  // of the first list, kLookUpsPerPixel...; then
 
 const uint kLampTermsId = 25u; // lamp_light.comp: bits of the terms that are made
 const uint kLampEachId = 26u;  // lamp_light.comp
-const uint kMovingId = 27u;    // trace_glossy.comp: whether shapes move
+const uint kMovingId = 27u;    // trace_glossy.comp, temporal.comp: whether shapes move
 const uint kMovingBoxesId = 29u; // moving_light.comp: of boxes, else of round shapes
 const uint kSurfaceProbesId = 31u; // surface_light.comp
 const uint kUntintedId = 30u;    // trace_glossy.comp, reconstruct.comp: the filters after it work on light before the surface's tint, and give it back

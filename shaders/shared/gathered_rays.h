@@ -2,12 +2,6 @@
 // draw the same numbers, so that the order of probes changes nothing, and what a ray brought can be asked for its direction later.
 SCONCE_CONST uint kGatherStream = 6u;
 
-/// Of a pair of numbers for the i-th ray; beyond the samples of one sequence others follow.
-SCONCE_FN vec2 pairOfRay(uvec2 pixel, uint i, uint stream)
-{
-    return randomPair(pixel, i & ((1u << kSampleBits) - 1u), stream, 2654435769u * (i >> kSampleBits));
-}
-
 /// A texel's grazing, from 8 bits of its SurfaceTexel::normal.
 SCONCE_PURE real unpackGrazing(uint normal) { return real(normal >> 24) * (kMostGrazing / real(255.0)); }
 

@@ -27,5 +27,18 @@ SCONCE_FN vec2 randomPair(uvec2 pixel, uint sampleIndex, uint stream, uint seed)
     return vec2(u >> 8u) * (1.0f / 16777216.0f);
 }
 
+/// Of any number of samples, the i-th; beyond those of one sequence others follow.
+SCONCE_FN vec2 pairOfRay(uvec2 pixel, uint i, uint stream)
+{
+    return randomPair(pixel, i & ((1u << kSampleBits) - 1u), stream, 2654435769u * (i >> kSampleBits));
+}
+
+/// Of the i-th of a frame's samples of a pixel: a pixel's frames go along one sequence, so that what is blended over time is spread as well as
+/// what one frame takes.
+SCONCE_FN vec2 pairOfFrame(uvec2 pixel, uint frameNumber, uint samples, uint i, uint stream)
+{
+    return pairOfRay(pixel, frameNumber * samples + i, stream);
+}
+
 SCONCE_STRUCTS_END
 #endif

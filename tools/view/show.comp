@@ -1,5 +1,8 @@
 #version 460
+#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shared/frame.h"
 
 // The viewer's picture: one of a frame's, as colours of 8 bits. Dispatch: ceil(width/8) x ceil(height/8).
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -82,7 +85,7 @@ vec3 encodedView(ivec2 at)
 {
     float w = texelFetch(depthImage, at, 0).r;
     if (view == 4u) return w > 0.0 ? 0.5 + 0.5 * texelFetch(normalRoughness, at, 0).rgb : vec3(0.0);
-    if (view == 7u) return w > 0.0 ? vec3(mod(texelFetch(normalRoughness, at, 0).a, 2.0)) : vec3(0.0);
+    if (view == 7u) return w > 0.0 ? vec3(roughnessOf(texelFetch(normalRoughness, at, 0).a)) : vec3(0.0);
     return srgbFromLinear(linearView(at));
 }
 

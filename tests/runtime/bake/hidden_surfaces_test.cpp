@@ -183,47 +183,55 @@ TEST_F(HiddenSurfaces, WhatStandsInOneAnotherDoesNotDarkenItsRim)
 // A sealed room between lit ones, whose light is all that probes know.
 TEST_F(HiddenSurfaces, ADarkRoomStaysDark)
 {
-    Scene scene;
-    MeshBuilder mesh(scene);
-    const uint32_t grey = mesh.material("grey", vec3(0.5f), 1.0f), lamp = mesh.material("lamp", vec3(0.5f), 1.0f);
-    scene.materials[lamp].emission = vec3(1.0f);
-    for (const float side : {-1.1f, 1.0f}) // floor and ceiling, front and back, of three rooms; they pierce each other, as walls do
+    // Walls that pierce each other, as they do; and such as stand on each other, their triangles wound the wrong way round.
+    for (const bool turned : {false, true})
     {
-        mesh.box(vec3(-3.2f, side, -1.2f), vec3(3.2f, side + 0.1f, 1.2f), grey);
-        mesh.box(vec3(-3.2f, -1.05f, side), vec3(3.2f, 1.05f, side + 0.1f), grey);
-    }
-    for (const float x : {-3.1f, -1.0f, 0.9f, 3.0f})
-        mesh.box(vec3(x, -1.04f, -1.04f), vec3(x + 0.1f, 1.04f, 1.04f), std::abs(x) > 2.0f ? lamp : grey);
-    const FieldData field = bake(scene, {vec3(-2.0f, 0.0f, 0.1f), vec3(-1.5f, 0.2f, -0.3f), vec3(2.0f, -0.1f, 0.1f)});
-    const auto lightOf = [&](vec3 place, vec3 normal)
-    {
-        int reads = 0;
-        const vec3 point = (place - field.info.origin) / field.info.scale;
-        return twin::LightFieldTwin<float>(field, {}).surfaceLightAt(point, normal, normal, point + 0.5f * field.info.voxel * normal,
-                                                                     reads);
-    };
-    Random random(5, 0);
-    int known = 0;
-    double lit = 0.0, dark = 0.0, most = 0.0;
-    for (int i = 0; i < 300; ++i)
-    {
-        const vec2 at = 1.76f * random.uniform2() - 0.88f;
-        lit += double(lightOf(vec3(-2.0f + at.x, -1.0f, at.y), vec3(0, 1, 0)).light.g) / 300.0;
-        for (const auto& [place, normal] :
-             {std::pair(vec3(at.x, -1.0f, at.y), vec3(0, 1, 0)), std::pair(vec3(at.x, 1.0f, at.y), vec3(0, -1, 0)),
-              std::pair(vec3(-0.9f, at), vec3(1, 0, 0)), std::pair(vec3(0.9f, at), vec3(-1, 0, 0))})
+        SCOPED_TRACE(turned ? "turned" : "pierced");
+        const float end = turned ? 1.0f : 1.05f, across = turned ? 1.0f : 1.04f;
+        Scene scene;
+        MeshBuilder mesh(scene);
+        const uint32_t grey = mesh.material("grey", vec3(0.5f), 1.0f), lamp = mesh.material("lamp", vec3(0.5f), 1.0f);
+        scene.materials[lamp].emission = vec3(1.0f);
+        for (const float side : {-1.1f, 1.0f}) // floor and ceiling, front and back, of three rooms
         {
-            const auto found = lightOf(place, normal);
-            known += found.probes == -1;
-            dark += double(found.light.g) / 1200.0;
-            most = std::max(most, double(found.light.g));
+            mesh.box(vec3(-3.2f, side, -1.2f), vec3(3.2f, side + 0.1f, 1.2f), grey);
+            mesh.box(vec3(-3.2f, -end, side), vec3(3.2f, end, side + 0.1f), grey);
         }
+        for (const float x : {-3.1f, -1.0f, 0.9f, 3.0f})
+            mesh.box(vec3(x, -across, -across), vec3(x + 0.1f, across, across), std::abs(x) > 2.0f ? lamp : grey);
+        if (turned)
+            for (glm::uvec3& triangle : scene.triangles) std::swap(triangle.y, triangle.z);
+        const FieldData field = bake(scene, {vec3(-2.0f, 0.0f, 0.1f), vec3(-1.5f, 0.2f, -0.3f), vec3(2.0f, -0.1f, 0.1f)});
+        const auto lightOf = [&](vec3 place, vec3 normal)
+        {
+            int reads = 0;
+            const vec3 point = (place - field.info.origin) / field.info.scale;
+            return twin::LightFieldTwin<float>(field, {}).surfaceLightAt(point, normal, normal, point + 0.5f * field.info.voxel * normal,
+                                                                         reads);
+        };
+        Random random(5, 0);
+        int known = 0;
+        double lit = 0.0, dark = 0.0, most = 0.0;
+        for (int i = 0; i < 300; ++i)
+        {
+            const vec2 at = 1.76f * random.uniform2() - 0.88f;
+            lit += double(lightOf(vec3(-2.0f + at.x, -1.0f, at.y), vec3(0, 1, 0)).light.g) / 300.0;
+            for (const auto& [place, normal] :
+                 {std::pair(vec3(at.x, -1.0f, at.y), vec3(0, 1, 0)), std::pair(vec3(at.x, 1.0f, at.y), vec3(0, -1, 0)),
+                  std::pair(vec3(-0.9f, at), vec3(1, 0, 0)), std::pair(vec3(0.9f, at), vec3(-1, 0, 0))})
+            {
+                const auto found = lightOf(place, normal);
+                known += found.probes == -1;
+                dark += double(found.light.g) / 1200.0;
+                most = std::max(most, double(found.light.g));
+            }
+        }
+        EXPECT_EQ(known, 1200);
+        EXPECT_LT(dark, 0.002 * lit);
+        EXPECT_LT(most, 0.15 * lit) << "a voxel is wider than a wall here";
+        RecordProperty("light of the lit room, share of it in the dark one, at most",
+                       std::to_string(lit) + " " + std::to_string(dark / lit) + " " + std::to_string(most / lit));
     }
-    EXPECT_EQ(known, 1200);
-    EXPECT_LT(dark, 0.002 * lit);
-    EXPECT_LT(most, 0.15 * lit) << "a voxel is wider than a wall here";
-    RecordProperty("light of the lit room, share of it in the dark one, at most",
-                   std::to_string(lit) + " " + std::to_string(dark / lit) + " " + std::to_string(most / lit));
 }
 
 // Outside of a closed room nobody stands, and no probe tells.

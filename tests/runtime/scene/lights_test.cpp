@@ -171,6 +171,9 @@ TEST(LightList, DirectionalMapsAboutAnEyeLieInOneAnother)
     Scene one = scene;
     one.lights.pop_back();
     EXPECT_EQ(buildLightList(one, space, {.eye = eye}).header.sunLevels, 2u);
+    const LightList halved = buildLightList(one, space, {.sunShadow = 8192, .eye = eye});
+    EXPECT_EQ(halved.settings.sunShadow, 4096u) << "a map of the size asked for is too large";
+    EXPECT_EQ(halved.header.sunLevels, 2u);
     Scene many = scene;
     many.lights.assign(100, Light{});
     EXPECT_EQ(buildLightList(many, space, {.sunShadow = 256, .eye = eye}).sunLayers, 100u);

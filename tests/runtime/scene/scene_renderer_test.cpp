@@ -1,9 +1,11 @@
 // A whole frame, from triangles to a picture, against the path-traced truth.
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "bench/reference/reference.h"
+#include "runtime/field/field_space.h"
 #include "runtime/field/tracer_cpu.h"
 #include "scene/builtin_scenes.h"
 #include "scene/mesh_builder.h"
@@ -412,6 +414,51 @@ TEST_F(SceneRendererTest, ARetroreflectiveWallIsThePathTracers)
     }
 }
 
+// In one plane with a mirror-like surface as rough, whose reflections are of another side of the room.
+TEST_F(SceneRendererTest, NoFilterBlendsARetroreflectiveSurfaceWithWhatIsBesideIt)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t white = mesh.material("white", vec3(0.7f)), red = mesh.material("red", vec3(0.7f, 0.05f, 0.05f)),
+                   sign = mesh.material("sign", vec3(0.9f), 0.3f, 1.0f), plate = mesh.material("plate", vec3(0.8f), 0.3f, 1.0f);
+    mesh.box({-1.1f, -0.1f, -1.1f}, {1.1f, 0, 1.1f}, white);
+    mesh.box({-1.1f, 2, -1.1f}, {1.1f, 2.1f, 1.1f}, white);
+    mesh.box({-1.1f, 0, -1.1f}, {-1, 2, 1.1f}, red);
+    mesh.box({1, 0, -1.1f}, {1.1f, 2, 1.1f}, white);
+    mesh.box({-1, 0, 1}, {1, 2, 1.1f}, white);
+    mesh.box({-1, 0, -1.1f}, {-0.1f, 2, -1}, plate);
+    mesh.box({-0.1f, 0, -1.1f}, {1, 2, -1}, sign);
+    mesh.quad({-0.3f, 1.98f, -0.3f}, {0.3f, 1.98f, -0.3f}, {0.3f, 1.98f, 0.3f}, {-0.3f, 1.98f, 0.3f}, mesh.emitter("lamp", vec3(8.0f)));
+    mesh.camera("towards the edge", {0.7f, 1.0f, 0.8f}, {-0.1f, 1.0f, -1.0f}, 40.0f);
+    scene.materials[sign].retroreflective = true;
+    const std::vector<vec3> probes = {{0.5f, 1.5f, 0.5f}, {-0.6f, 0.6f, 0.5f}, {0.6f, 0.5f, -0.5f}, {-0.5f, 1.4f, -0.4f}};
+    const auto field = bakeByTriangles(scene, probes, bakeOf(256, 2, kFewTexels, 128));
+    ASSERT_TRUE(field) << field.error().message;
+    const ImageSet truth = truthOf(scene, 256);
+    const auto& right = truth.find("glossy_indirect")->pixels;
+    for (const uint32_t every : {1u, 16u})
+    {
+        RenderSettings settings = settingsFor();
+        settings.glossyRays = 4; // few: the filter reaches farther
+        settings.traceEvery = every;
+        const auto frame = drawWith(*field, scene, settings);
+        ASSERT_TRUE(frame) << frame.error().message;
+        const auto isOf = [&](size_t i, float albedo) { return std::abs(frame->albedo[i].r - albedo) < 0.01f; };
+        double ours = 0.0, theirs = 0.0;
+        int pixels = 0;
+        for (size_t i = 3; i < frame->albedo.size(); ++i)
+        {
+            if (!isOf(i, 0.9f) || !(isOf(i - 1, 0.8f) || isOf(i - 2, 0.8f) || isOf(i - 3, 0.8f))) continue;
+            ++pixels;
+            ours += double(frame->glossyIndirect[i].g);
+            theirs += double(right[3 * i + 1]);
+        }
+        ASSERT_GT(pixels, 150);
+        RecordProperty("one pixel of " + std::to_string(every), std::to_string(ours / theirs));
+        EXPECT_NEAR(ours / theirs, 1.0, 0.06) << every;
+    }
+}
+
 TEST_F(SceneRendererTest, EffectThatIsOffAddsNothingAndChangesNothingElse)
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
@@ -507,10 +554,35 @@ TEST_F(SceneRendererTest, ShadowsOfTheSunAreFineAboutTheEye)
     EXPECT_GT(far, 3) << "or the map of all would do";
     ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye));
     EXPECT_EQ(wrong(), 0);
+    const vec3 drawnAbout = uploaded->lights().header.eye;
     ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye + vec3(0.3f, 0.0f, 0.0f)));
-    EXPECT_EQ(wrong(), 0) << "so near nothing changes";
+    EXPECT_EQ(uploaded->lights().header.eye, drawnAbout) << "so near nothing is drawn";
+    EXPECT_EQ(wrong(), 0);
+    const auto nowhere = uploaded->lookFrom(gpu(), vec3(0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f));
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().code, ErrorCode::badArgument);
+    EXPECT_EQ(uploaded->lights().header.eye, drawnAbout);
     ASSERT_TRUE(uploaded->lookFrom(gpu(), vec3(-60.0f, 1.0f, 60.0f)));
+    EXPECT_NE(uploaded->lights().header.eye, drawnAbout);
     EXPECT_EQ(wrong(), far);
+}
+
+// A street: across it a map is narrower than along it, and the eye sooner near its border.
+TEST_F(SceneRendererTest, FinerMapsOfANarrowSceneGoAlongAcrossIt)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box({-150, -1.2f, -10}, {150, -1, 10}, mesh.material("white", vec3(0.8f)));
+    scene.lights.push_back(test::light(LightType::directional, vec3(0.0f), {0, -1, 0}, 1.0f));
+    const vec3 eye(0.0f, 0.7f, 0.0f);
+    auto uploaded = DeviceScene::create(gpu(), scene, fieldSpace(scene.bounds()), {.light = {.sunShadow = 1024, .eye = eye}});
+    ASSERT_TRUE(uploaded) << uploaded.error().message;
+    ASSERT_EQ(uploaded->lights().header.sunLevels, 4u) << "the finest is 1.4 m long and 9 cm wide";
+    const vec3 drawnAbout = uploaded->lights().header.eye;
+    ASSERT_TRUE(uploaded->lookFrom(gpu(), eye + vec3(0.2f, 0.0f, 0.0f)));
+    EXPECT_EQ(uploaded->lights().header.eye, drawnAbout);
+    ASSERT_TRUE(uploaded->lookFrom(gpu(), eye + vec3(0.0f, 0.0f, 0.2f)));
+    EXPECT_NE(uploaded->lights().header.eye, drawnAbout);
 }
 
 // Objects that move are in the G-buffer and not in the light field: they are lit by it and reflect it.
