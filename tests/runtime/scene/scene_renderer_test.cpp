@@ -436,26 +436,35 @@ TEST_F(SceneRendererTest, NoFilterBlendsARetroreflectiveSurfaceWithWhatIsBesideI
     ASSERT_TRUE(field) << field.error().message;
     const ImageSet truth = truthOf(scene, 256);
     const auto& right = truth.find("glossy_indirect")->pixels;
+    const auto uploaded = DeviceScene::create(gpu(), scene, field->info);
+    const auto light = makeLightField(gpu(), *field);
+    ASSERT_TRUE(uploaded && light);
     for (const uint32_t every : {1u, 16u})
     {
         RenderSettings settings = settingsFor();
         settings.glossyRays = 4; // few: the filter reaches farther
         settings.traceEvery = every;
-        const auto frame = drawWith(*field, scene, settings);
-        ASSERT_TRUE(frame) << frame.error().message;
-        const auto isOf = [&](size_t i, float albedo) { return std::abs(frame->albedo[i].r - albedo) < 0.01f; };
+        const auto renderer = SceneRenderer::create(gpu(), *uploaded, *light, settings);
+        ASSERT_TRUE(renderer) << renderer.error().message;
         double ours = 0.0, theirs = 0.0;
-        int pixels = 0;
-        for (size_t i = 3; i < frame->albedo.size(); ++i)
+        constexpr uint32_t kFrames = 16;
+        for (uint32_t frameNumber = 0; frameNumber < kFrames; ++frameNumber)
         {
-            if (!isOf(i, 0.9f) || !(isOf(i - 1, 0.8f) || isOf(i - 2, 0.8f) || isOf(i - 3, 0.8f))) continue;
-            ++pixels;
-            ours += double(frame->glossyIndirect[i].g);
-            theirs += double(right[3 * i + 1]);
+            const auto frame = (*renderer)->render(scene.cameras.front(), frameNumber);
+            ASSERT_TRUE(frame) << frame.error().message;
+            const auto isOf = [&](size_t i, float albedo) { return std::abs(frame->albedo[i].r - albedo) < 0.01f; };
+            int pixels = 0;
+            for (size_t i = 3; i < frame->albedo.size(); ++i)
+            {
+                if (!isOf(i, 0.9f) || !(isOf(i - 1, 0.8f) || isOf(i - 2, 0.8f) || isOf(i - 3, 0.8f))) continue;
+                ++pixels;
+                ours += double(frame->glossyIndirect[i].g);
+                theirs += double(right[3 * i + 1]);
+            }
+            ASSERT_GT(pixels, 150);
         }
-        ASSERT_GT(pixels, 150);
         RecordProperty("one pixel of " + std::to_string(every), std::to_string(ours / theirs));
-        EXPECT_NEAR(ours / theirs, 1.0, 0.06) << every;
+        EXPECT_NEAR(ours / theirs, 1.0, 0.04) << every << ": blended it is 0.91"; // of few traced pixels 0.97
     }
 }
 
