@@ -564,7 +564,7 @@ TEST_F(SceneRendererTest, ShadowsOfTheSunAreFineAboutTheEye)
     ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye));
     EXPECT_EQ(wrong(), 0);
     const vec3 drawnAbout = uploaded->lights().header.eye;
-    ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye + vec3(0.3f, 0.0f, 0.0f)));
+    ASSERT_TRUE(uploaded->lookFrom(gpu(), scene.cameras.front().eye + vec3(0.1f, 0.0f, 0.0f)));
     EXPECT_EQ(uploaded->lights().header.eye, drawnAbout) << "so near nothing is drawn";
     EXPECT_EQ(wrong(), 0);
     const auto nowhere = uploaded->lookFrom(gpu(), vec3(0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f));
