@@ -14,6 +14,7 @@
     bench/pages/paths_table.sh                                  bench/results/field_paths.json
     bench/pages/day_sheet.sh                                    bench/results/day.json
     bench/pages/gallery.sh                                      bench/results/gallery.json
+    bench/pages/effects_sheet.sh                                bench/results/each_effect.json
     bench/pages/stream_table.sh                                 bench/results/streaming.json
     bench/pages/sparse_table.sh                                 bench/results/edges_and_points.json and cached_frames.json
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
@@ -637,6 +638,13 @@ def gallery(arguments):
            "pixels in which both see the same surface; mean: over the reference's; truths_own: relMSE of the reference by its noise, of indirect light"], rows)
 
 
+def each_effect(arguments):
+    """Of the lines that effects_sheet.sh prints."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("each_effect.json", "Each effect alone, one ray a pixel, 160x90, against the path tracer (256 paths a pixel, 4 bounces), the layer that it makes", ["bench/pages/effects_sheet.sh"],
+          ["passes in ms of one frame; sun is judged with the whole of direct light"], rows)
+
+
 def least_and_most(texts):
     numbers = sorted((float(text), text) for text in texts if text != "nan")
     return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
@@ -644,7 +652,7 @@ def least_and_most(texts):
 
 if __name__ == "__main__":
     modes = {"methods": methods, "knobs": knobs, "rays": rays, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "gallery": gallery, "fly": fly, "flights": flights}
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "gallery": gallery, "each_effect": each_effect, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])
