@@ -95,7 +95,8 @@ void main()
     if ((terms & (1u << kTerm)) == 0u) return;
     vec4 own = imageLoad(light, at);
     vec4 past = vec4(0.0);
-    bool sharp = kTerm == kTermGlossy && p.brdf.roughness < kSharpBelow, moves = false, guessed = false; // its reflection; where that was
+    bool sharp = kTerm == kTermGlossy && p.brdf.roughness < kSharpBelow;
+    bool moves = false, guessed = false; // a sharp reflection; where it was, for on a bent surface it has no one place
     if (frame.follows != 0u)
     {
         float along = 0.0; // metres towards the eye, from the surface to what is followed

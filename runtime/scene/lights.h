@@ -23,7 +23,8 @@ struct LightSettings
     uint32_t pointShadow = knobs::pointShadow.value;     // texels a side of a point light's six faces
     uint32_t emitterShadow = knobs::emitterShadow.value; // the same for emitter samples
     uint32_t skyShadow = knobs::skyShadow.value;         // texels a side of a sky direction's map
-    std::optional<vec3> eye;          // metres: directional lights have finer maps about it, too, where the scene is large
+    std::optional<vec3> eye;                             // metres: directional lights have finer maps about it, too, where a map's texels
+                                                         // show and kShadowBytes have room for them beside all maps at their size
     std::vector<uint32_t> lamps = {}; // triangles, ascending, that are no emitters, though they shine: runtime/bake/lamps.h
 };
 
