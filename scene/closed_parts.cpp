@@ -19,17 +19,49 @@ std::vector<uint32_t> weld(const std::vector<vec3>& positions)
     return first;
 }
 
-std::vector<Outside> outsideOf(const Scene& scene, std::span<const uint32_t> triangles)
+namespace
 {
-    const std::vector<uint32_t> welded = weld(scene.positions);
-    // Parts by their lowest vertex (union-find with path halving).
-    std::vector<uint32_t> parent(scene.positions.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto rootOf = [&](uint32_t v)
+
+/// Sets that grow together (union-find with path halving), named by the lowest of their members.
+class Sets
+{
+public:
+    explicit Sets(size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
+    uint32_t rootOf(uint32_t v)
     {
         while (parent[v] != v) v = parent[v] = parent[parent[v]];
         return v;
-    };
+    }
+    void join(uint32_t a, uint32_t b)
+    {
+        const uint32_t rootA = rootOf(a), rootB = rootOf(b);
+        parent[std::max(rootA, rootB)] = std::min(rootA, rootB);
+    }
+
+private:
+    std::vector<uint32_t> parent;
+};
+
+} // namespace
+
+std::vector<uint32_t> joinedParts(const Scene& scene, std::span<const uint32_t> triangles)
+{
+    std::vector<vec3> corners;
+    for (const uint32_t triangle : triangles)
+        for (int i = 0; i < 3; ++i) corners.push_back(scene.positions[scene.triangles[triangle][i]]);
+    const std::vector<uint32_t> welded = weld(corners);
+    Sets parts(triangles.size());
+    for (uint32_t c = 0; c < corners.size(); ++c) parts.join(c / 3, welded[c] / 3);
+    std::vector<uint32_t> first;
+    for (uint32_t i = 0; i < triangles.size(); ++i) first.push_back(parts.rootOf(i));
+    return first;
+}
+
+std::vector<Outside> outsideOf(const Scene& scene, std::span<const uint32_t> triangles)
+{
+    const std::vector<uint32_t> welded = weld(scene.positions);
+    Sets parts(scene.positions.size()); // of vertices
+    const auto rootOf = [&](uint32_t v) { return parts.rootOf(v); };
     struct Edge
     {
         uint64_t between; // lower vertex, higher vertex
@@ -45,8 +77,7 @@ std::vector<Outside> outsideOf(const Scene& scene, std::span<const uint32_t> tri
         for (int i = 0; i < 3; ++i)
         {
             const uint32_t a = corner[i], b = corner[(i + 1) % 3];
-            const uint32_t rootA = rootOf(a), rootB = rootOf(b);
-            parent[std::max(rootA, rootB)] = std::min(rootA, rootB);
+            parts.join(a, b);
             edges.push_back({uint64_t(std::min(a, b)) << 32 | std::max(a, b), a < b ? 1 : -1});
         }
     }

@@ -12,6 +12,10 @@ namespace sconce
 /// For every vertex the first vertex with the same position, bit by bit but -0 and 0 alike: meshes repeat positions for their normals.
 std::vector<uint32_t> weld(const std::vector<vec3>& positions);
 
+/// For each of some triangles the place in the list of the first that it hangs together with, by corners that these triangles share. Cost:
+/// a sort of their corners.
+std::vector<uint32_t> joinedParts(const Scene& scene, std::span<const uint32_t> triangles);
+
 /// Which side of a triangle can be seen from outside.
 enum class Outside : int8_t
 {

@@ -211,25 +211,46 @@ vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv)
     return m.normalTexture.image < 0 ? vec3(0.5f, 0.5f, 1.0f) : vec3(sampleTexture(scene, m.normalTexture, uv, false));
 }
 
-vec3 meanEmission(const Scene& scene, uint32_t triangle)
+namespace
 {
-    const uint32_t index = scene.triangleMaterial[triangle];
-    const Material& material = scene.materials[index];
-    if (material.emission == vec3(0.0f)) return vec3(0.0f);
-    const bool opaque = !material.blended && material.alphaCutoff <= 0.0f;
-    if (opaque && material.emissionTexture.image < 0) return material.emission;
+
+/// Of what `at` says of points spread evenly over a triangle.
+template <class At> auto meanOver(const Scene& scene, uint32_t triangle, At at)
+{
     const uvec3 corners = scene.triangles[triangle];
     constexpr int kSteps = 6;
-    vec3 sum(0.0f);
+    decltype(at(vec2(0.0f))) sum(0.0f);
     int count = 0;
     for (int i = 0; i < kSteps; ++i)
         for (int j = 0; i + j < kSteps; ++j, ++count)
         {
             const float u = (float(i) + 1.0f / 3.0f) / kSteps, v = (float(j) + 1.0f / 3.0f) / kSteps;
-            const vec2 uv = scene.uvs[corners.x] * (1.0f - u - v) + scene.uvs[corners.y] * u + scene.uvs[corners.z] * v;
-            sum += coverage(scene, index, uv) * evaluateMaterial(scene, index, uv).emission;
+            sum += at(scene.uvs[corners.x] * (1.0f - u - v) + scene.uvs[corners.y] * u + scene.uvs[corners.z] * v);
         }
     return sum / float(count);
+}
+
+bool isOpaque(const Material& material)
+{
+    return !material.blended && material.alphaCutoff <= 0.0f;
+}
+
+} // namespace
+
+float meanCoverage(const Scene& scene, uint32_t triangle)
+{
+    const uint32_t index = scene.triangleMaterial[triangle];
+    if (isOpaque(scene.materials[index])) return 1.0f;
+    return meanOver(scene, triangle, [&](vec2 uv) { return coverage(scene, index, uv); });
+}
+
+vec3 meanEmission(const Scene& scene, uint32_t triangle)
+{
+    const uint32_t index = scene.triangleMaterial[triangle];
+    const Material& material = scene.materials[index];
+    if (material.emission == vec3(0.0f)) return vec3(0.0f);
+    if (isOpaque(material) && material.emissionTexture.image < 0) return material.emission;
+    return meanOver(scene, triangle, [&](vec2 uv) { return coverage(scene, index, uv) * evaluateMaterial(scene, index, uv).emission; });
 }
 
 std::string validate(const Scene& scene)

@@ -155,6 +155,9 @@ vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv);
 /// say.
 vec3 meanEmission(const Scene& scene, uint32_t triangle);
 
+/// Mean of coverage() over a triangle, by the same points.
+float meanCoverage(const Scene& scene, uint32_t triangle);
+
 /// Checks what every later stage relies on: array lengths agree, indices in range, all numbers finite, normals unit. A host calls it on
 /// its own scenes. Returns the sentence of the first fault, or an empty string.
 std::string validate(const Scene& scene);

@@ -143,10 +143,12 @@ BrdfValue PathTracer::emitterLight(const ShadingPoint& point, Random& random) co
     if (!any(value.diffuse) && !any(value.specular)) return none;
     const vec3 emission = evaluateMaterial(scene, scene.triangleMaterial[sample.triangle], sample.uv).emission;
     if (!any(emission)) return none;
-    // Seen when the first thing on the way is the drawn triangle itself, so that no epsilon can hide or reveal it, or one at its place;
-    // what lies behind it was met through a hole of it.
+    // Seen when the first thing on the way is the drawn triangle itself, so that no epsilon can hide or reveal it, or one at its place that
+    // doesn't shine itself: of two lamps at one place one is met, and only its draws count. What lies behind was met through a hole of it.
     const auto hit = rays.closest(origin, direction);
-    if (!hit || (hit->triangle != sample.triangle && std::abs(hit->t - distance) > 2.0f * rays.offset())) return none;
+    const auto isAtItsPlace = [&]
+    { return std::abs(hit->t - distance) <= 2.0f * rays.offset() && emitters.areaPdf(hit->triangle) == 0.0f; };
+    if (!hit || (hit->triangle != sample.triangle && !isAtItsPlace())) return none;
     const float weight = balance(pdf, scatterPdf(point, direction)) / pdf;
     value.diffuse *= emission * weight;
     value.specular *= emission * weight;

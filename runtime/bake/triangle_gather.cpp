@@ -57,8 +57,8 @@ struct Gatherer : LightFieldTwin<float>
     size_t slot = 0;                                      // of the texel in it
     std::vector<float> running;                           // sums of the emitters' weights, up to each and with it
     std::array<vec3, gpu::kReflectionsCounted> brought{}; // light of emitters and sky that the rays have brought by reflections, summed
-    float met = 0.0f;                                     // length of the last ray to what it met first; kBack, kSeen
-    std::span<float> lengths;                             // of each ray, like `met`; empty: not asked for
+    float firstMet = 0.0f;                                // length of the last ray to what it met first; kBack, kSeen
+    std::span<float> lengths;                             // of each ray, like `firstMet`; empty: not asked for
     std::span<const Outside> outside;                     // TriangleGather::Openness
 
     Gatherer(const ExactRays& rays, const FieldData& data, const LightList& list, const TriangleGather::Desc& wanted, float offset,
@@ -84,7 +84,7 @@ struct Gatherer : LightFieldTwin<float>
     void keepLink(uint i, uint link)
     {
         links[size_t(i) * (links.size() / desc.rays) + slot] = link;
-        if (!lengths.empty()) lengths[i] = std::exchange(met, 0.0f);
+        if (!lengths.empty()) lengths[i] = std::exchange(firstMet, 0.0f);
     }
 
     bool emitterReaches(vec3 point, vec3 toLight, float distance_, vec3) const
@@ -105,7 +105,7 @@ struct Gatherer : LightFieldTwin<float>
         {
             const auto hit = triangles.closest(from, direction);
             if (turn == 0 && hit) t = hit->t / field.scale;
-            if (turn == 0) met = hit && isInner(hit->triangle, direction) ? kBack : t;
+            if (turn == 0) firstMet = hit && isInner(hit->triangle, direction) ? kBack : t;
             if (!hit && turn == 0) return kLinkSky;
             if (!hit)
             {
@@ -136,15 +136,19 @@ struct Gatherer : LightFieldTwin<float>
                 continue;
             }
             const uint found = texelAt((place.position - field.origin) / field.scale, place.normal, random.uniform());
-            if (found != kLinkSurface && turn == 0) met = kSeen;
+            if (found != kLinkSurface && turn == 0) firstMet = kSeen;
             if (found != kLinkSurface) return found | nearestTint(tint, turn) << kLinkTexelBits;
-            // No probe sees the place: there the ray is scattered itself.
+            // No probe sees the place: there the ray is scattered itself. Of what shines without extent and of lamps all is sent to all
+            // sides, as texels send it, see sending() and directOf().
             const vec3 scattered = scatteredBy(place.surface);
             const float goesOn = luminance(scattered);
-            broughtBy(turn + 1) += tint * scattered *
-                                   (emittersByDiffuse(place, ofLights) + (shareToAllSides(place.surface) * deltaLightAt(place) +
-                                                                          lampLightAt(place.position, place.normal, place.normal)) /
-                                                                             kBrdfPi);
+            const vec3 sent =
+                hemisphericalAlbedo(place.surface) / (1.0f - shareOnward(place.surface, luminance(hemisphericalSpecular(place.surface))));
+            broughtBy(turn + 1) +=
+                tint *
+                (scattered * emittersByDiffuse(place, ofLights) +
+                 sent * (shareToAllSides(place.surface) * deltaLightAt(place) + lampLightAt(place.position, place.normal, place.normal)) /
+                     kBrdfPi);
             if (turn == kMostTurns || !(random.uniform() < goesOn)) return kLinkDark;
             tint *= scattered / goesOn;
             const vec3 up = sampleCosine(random.uniform2());

@@ -24,78 +24,149 @@ float radicalInverse(uint32_t i, uint32_t base)
     return inverse;
 }
 
-void addEmitters(const Scene& scene, const gpu::LightFieldInfo& space, uint32_t count, std::span<const uint32_t> lamps, LightList& list)
+/// Samples of what shines, see buildLightList().
+class EmitterSamples
 {
+public:
+    EmitterSamples(const Scene& of, const gpu::LightFieldInfo& in, std::span<const uint32_t> lamps, LightList& into)
+        : scene(of), space(in), list(into), first(into.lights.size())
+    {
+        collect(lamps);
+    }
+
+    /// @param count  above 0
+    /// @param most   where some lamps got none of `count`
+    void draw(uint32_t count, uint32_t most)
+    {
+        if (!(power > 0.0)) return;
+        outside = outsideOf(scene, shining);
+        spread(count);
+        keepPower(most);
+        list.header.emitterCount += uint32_t(sampled.size());
+        for (size_t i = 0; i < sampled.size(); ++i) list.lights[first + i].area = float(emitters[sampled[i]].patch);
+        for (size_t i = 0; i < emitters.size(); ++i)
+            list.emitters.push_back({emitters[i].triangle,
+                                     emitters[i].emission / std::max(meanCoverage(scene, emitters[i].triangle), 1e-6f),
+                                     float(emitters[i].patch),
+                                     outside[i] == Outside::both   ? 0
+                                     : outside[i] == Outside::back ? -1
+                                                                   : 1});
+    }
+
+private:
     struct Emitter
     {
         uint32_t triangle;
         vec3 emission;
         double area, power;
         double share = 0.0, end = 0.0; // of the samples, and of its stretch of the cumulated shares
+        double patch = 0.0;            // that a sample stands for
+        double carried() const { return patch * double(luminance(emission)); }
     };
-    std::vector<Emitter> emitters;
-    double power = 0.0, area = 0.0;
-    for (uint32_t t = 0; t < scene.triangles.size(); ++t)
+
+    void collect(std::span<const uint32_t> lamps)
     {
-        const vec3 emission = meanEmission(scene, t);
-        if (emission == vec3(0.0f)) continue;
-        list.shines = true;
-        if (std::ranges::binary_search(lamps, t)) continue;
-        const uvec3 corner = scene.triangles[t];
-        const glm::dvec3 a(scene.positions[corner.x]), b(scene.positions[corner.y]), c(scene.positions[corner.z]);
-        const double own = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
-        emitters.push_back({t, emission, own, own * luminance(emission)});
-        power += emitters.back().power;
-        area += own;
+        for (uint32_t t = 0; t < scene.triangles.size(); ++t)
+        {
+            const vec3 emission = meanEmission(scene, t);
+            if (emission == vec3(0.0f)) continue;
+            list.shines = true;
+            if (std::ranges::binary_search(lamps, t)) continue;
+            const uvec3 corner = scene.triangles[t];
+            const glm::dvec3 a(scene.positions[corner.x]), b(scene.positions[corner.y]), c(scene.positions[corner.z]);
+            const double own = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
+            emitters.push_back({t, emission, own, own * luminance(emission)});
+            shining.push_back(t);
+            power += emitters.back().power;
+            area += own;
+        }
     }
-    if (!(power > 0.0)) return;
-    // A back that nobody sees lights nothing: shadows are not exact enough to keep the light of a small globe's far side in it.
-    std::vector<uint32_t> shining;
-    for (const Emitter& emitter : emitters) shining.push_back(emitter.triangle);
-    const std::vector<Outside> outside = outsideOf(scene, shining);
-    // Half by power and half by area: a dim lamp alone in its room has samples beside bright ones elsewhere.
-    double shares = 0.0;
-    for (Emitter& emitter : emitters)
+
+    void add(size_t number, vec3 point)
     {
-        emitter.share = 0.5 * (emitter.power / power + emitter.area / area);
-        emitter.end = shares += emitter.share;
-    }
-    const size_t first = list.lights.size();
-    double carried = 0.0;
-    for (uint32_t i = 0; i < count; ++i)
-    {
-        const double target = shares * (i + 0.5) / count;
-        const auto found = std::lower_bound(emitters.begin(), emitters.end(), target, [](const Emitter& e, double p) { return e.end < p; });
-        const Emitter& emitter = found == emitters.end() ? emitters.back() : *found;
-        const uvec3 corner = scene.triangles[emitter.triangle];
-        const double begin = found == emitters.begin() || found == emitters.end() ? 0.0 : (found - 1)->end;
-        // Where the stratum lies in the triangle's stretch is one coordinate, so that strata of one triangle spread over it as rows.
-        const float along = found == emitters.end() ? 0.5f : float((target - begin) / (emitter.end - begin));
-        const float root = std::sqrt(std::clamp(along, 0.0f, 1.0f)), across = radicalInverse(i + 1, 2);
-        const vec3 a = scene.positions[corner.x], b = scene.positions[corner.y], c = scene.positions[corner.z];
-        const vec3 point = (1.0f - root) * a + root * (1.0f - across) * b + root * across * c; // Osada et al. 2002, uniform in a triangle
+        const Emitter& emitter = emitters[number];
         gpu::GpuLight light{};
         light.type = gpu::kLightEmitter;
         light.position = (point - space.origin) / space.scale;
-        const Outside side = outside[size_t(&emitter - emitters.data())];
-        light.direction = geometricNormal(scene, emitter.triangle) * (side == Outside::back ? -1.0f : 1.0f);
-        light.innerCone = side == Outside::both ? 0.0f : 1.0f;
+        // A back that nobody sees lights nothing: shadows are not exact enough to keep the light of a small globe's far side in it.
+        light.direction = geometricNormal(scene, emitter.triangle) * (outside[number] == Outside::back ? -1.0f : 1.0f);
+        light.innerCone = outside[number] == Outside::both ? 0.0f : 1.0f;
         light.intensity = emitter.emission;
-        // About count * share samples fall on an emitter; each stands for its part of the area.
-        light.area = float(emitter.area / (count * emitter.share));
-        carried += double(light.area) * luminance(emitter.emission);
         light.shadowLayer = kNoShadowMap;
         list.lights.push_back(light);
-        ++list.header.emitterCount;
+        sampled.push_back(number);
     }
-    const double kept = power / carried; // what rounding to samples took or gave
-    for (size_t i = first; i < list.lights.size(); ++i) list.lights[i].area *= float(kept);
-    for (size_t i = 0; i < emitters.size(); ++i)
-        list.emitters.push_back({emitters[i].triangle, emitters[i].emission, float(kept * emitters[i].area / (count * emitters[i].share)),
-                                 outside[i] == Outside::both   ? 0
-                                 : outside[i] == Outside::back ? -1
-                                                               : 1});
-}
+
+    /// In strata of the scene's order.
+    void spread(uint32_t count)
+    {
+        // Half by power and half by area: a dim lamp alone in its room has samples beside bright ones elsewhere.
+        double shares = 0.0;
+        for (Emitter& emitter : emitters)
+        {
+            emitter.share = 0.5 * (emitter.power / power + emitter.area / area);
+            emitter.end = shares += emitter.share;
+            emitter.patch = emitter.area / (count * emitter.share); // about count * share samples fall on it
+        }
+        for (uint32_t i = 0; i < count; ++i)
+        {
+            const double target = shares * (i + 0.5) / count;
+            const auto found =
+                std::lower_bound(emitters.begin(), emitters.end(), target, [](const Emitter& e, double p) { return e.end < p; });
+            const Emitter& emitter = found == emitters.end() ? emitters.back() : *found;
+            const uvec3 corner = scene.triangles[emitter.triangle];
+            const double begin = found == emitters.begin() || found == emitters.end() ? 0.0 : (found - 1)->end;
+            // Where the stratum lies in the triangle's stretch is one coordinate, so that strata of one triangle spread over it as rows.
+            const float along = found == emitters.end() ? 0.5f : float((target - begin) / (emitter.end - begin));
+            const float root = std::sqrt(std::clamp(along, 0.0f, 1.0f)), across = radicalInverse(i + 1, 2);
+            const vec3 a = scene.positions[corner.x], b = scene.positions[corner.y], c = scene.positions[corner.z];
+            // Osada et al. 2002, uniform in a triangle
+            add(size_t(&emitter - emitters.data()), (1.0f - root) * a + root * (1.0f - across) * b + root * across * c);
+        }
+    }
+
+    /// Rounding to samples takes from some lamps and gives to others: those of each part carry its power. What no sample carries is all
+    /// samples' to carry.
+    void keepPower(uint32_t most)
+    {
+        struct Part
+        {
+            double power = 0.0, carried = 0.0;
+            size_t brightest = 0; // emitter
+        };
+        const std::vector<uint32_t> partOf = joinedParts(scene, shining);
+        std::vector<Part> parts(emitters.size()); // by the first of its emitters
+        for (size_t i = 0; i < emitters.size(); ++i)
+        {
+            Part& part = parts[partOf[i]];
+            if (part.power == 0.0 || emitters[i].power > emitters[part.brightest].power) part.brightest = i;
+            part.power += emitters[i].power;
+        }
+        for (const size_t number : sampled) parts[partOf[number]].carried += emitters[number].carried();
+        for (size_t i = 0; i < emitters.size() && sampled.size() < most; ++i)
+        {
+            Part& part = parts[partOf[i]];
+            if (part.carried > 0.0) continue;
+            const uvec3 corner = scene.triangles[emitters[part.brightest].triangle];
+            add(part.brightest, (scene.positions[corner.x] + scene.positions[corner.y] + scene.positions[corner.z]) / 3.0f);
+            part.carried = emitters[part.brightest].carried();
+        }
+        double carried = 0.0;
+        for (const Part& part : parts) carried += part.carried > 0.0 ? part.power : 0.0;
+        for (size_t i = 0; i < emitters.size(); ++i)
+            if (const Part& part = parts[partOf[i]]; part.carried > 0.0) emitters[i].patch *= part.power / part.carried * power / carried;
+    }
+
+    const Scene& scene;
+    const gpu::LightFieldInfo& space;
+    LightList& list;
+    const size_t first;
+    std::vector<Emitter> emitters;
+    std::vector<uint32_t> shining; // their triangles
+    std::vector<Outside> outside;
+    std::vector<size_t> sampled; // emitter of each sample
+    double power = 0.0, area = 0.0;
+};
 
 /// An orthographic map of the whole scene along a light's direction.
 void fitDirectional(gpu::GpuLight& light, const gpu::LightFieldInfo& space, uint32_t size)
@@ -228,7 +299,8 @@ LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, c
     list.settings = settings;
     limitMaps(list.settings.sunShadow, list.sunLayers, 4);
     if (settings.eye) addFinerSuns(space, *settings.eye, list);
-    addEmitters(scene, space, settings.emitterSamples, settings.lamps, list);
+    EmitterSamples(scene, space, settings.lamps, list)
+        .draw(settings.emitterSamples, settings.areaShadows ? 0 : kSamplesOfLamps * settings.emitterSamples);
     addSky(scene, settings.skySamples, list);
     if (settings.areaShadows) addAreaShadows(list);
     limitMaps(list.settings.skyShadow, list.skyLayers, 2);

@@ -32,7 +32,7 @@ struct LightSettings
 struct EmittingTriangle
 {
     uint32_t triangle;
-    vec3 emission; // radiance
+    vec3 emission; // radiance of what is there of it: a ray that meets it has met that
     float patch;   // field units squared that a sample stands for
     int side;      // 1, -1: only the side of its normal by winding shines, or the other; 0: both
 };
@@ -47,11 +47,14 @@ struct LightList
     bool shines = false;                    // some triangle does, be it an emitter or a lamp
     LightSettings settings;                 // with the sizes of maps halved until each kind takes at most kShadowBytes
 };
+inline constexpr uint32_t kSamplesOfLamps = 4;
 inline constexpr int kNoShadowMap = -1; // GpuLight::shadowLayer of a sample that rays shadow
 inline constexpr uint64_t kShadowBytes = uint64_t(128) << 20;
 
 /// Delta lights as they are. Emitters: stratified in the scene's order, so that the same scene gives the same list; half by power (area
-/// times mean emission), half by area alone, so that a dim lamp that lights a room of its own has samples beside a bright one. Sky: a
+/// times mean emission), half by area alone, so that a dim lamp that lights a room of its own has samples beside a bright one. The samples
+/// of each lamp, triangles that hang together, carry its power; one that got none has one more, up to kSamplesOfLamps times what was asked
+/// for, where samples need no map. Sky: a
 /// spherical Fibonacci set (Keinert et al. 2015) of equal shares. Kinds the scene lacks have no entries.
 LightList buildLightList(const Scene& scene, const gpu::LightFieldInfo& space, const LightSettings& settings);
 

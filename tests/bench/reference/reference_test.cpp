@@ -157,6 +157,24 @@ TEST(Reference, SquareEmitterMatchesThePolygonFormula)
     }
 }
 
+// Two squares at one place, as exporters leave them for two sides: one of them is seen, and gives the light of one.
+TEST(Reference, ADoubledLampIsOneLamp)
+{
+    double light[2] = {};
+    for (const bool doubled : {false, true})
+    {
+        Scene scene = floorUnder(0.5f, 0.4f);
+        scene.materials.push_back(plain(vec3(0.0f), 1.0f, 0.0f, vec3(10.0f)));
+        addQuad(scene, {0.2f, 2, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}, 1);
+        if (doubled) addQuad(scene, {0.2f, 2, 0}, {0.5f, 0, 0}, {0, 0, -0.5f}, 1);
+        ReferenceSettings settings = view({0, 1, 1}, vec3(0.0f), 16, 512, 1e-4f);
+        settings.bounces = 0;
+        const Reference r = render(scene, settings);
+        for (const char* layer : {"diffuse_indirect", "glossy_indirect"}) light[doubled] += meanOf(r.images, layer).value;
+    }
+    EXPECT_NEAR(light[1] / light[0], 1.0, 0.02);
+}
+
 TEST(Reference, MirrorShowsTheSkyExactly)
 {
     Scene scene = floorUnder(1.0f, 0.0f, 1.0f);

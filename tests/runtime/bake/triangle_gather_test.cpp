@@ -330,6 +330,63 @@ TEST_F(TriangleGathering, LightFromWhereNoProbeSeesArrives)
     }
 }
 
+// What no probe sees throws on light without extent, whatever it is made of: as much as where a probe sees it, metals as if they were
+// diffuse.
+TEST_F(TriangleGathering, MetalsAndCoatsThatNoProbeSeesThrowOnABulb)
+{
+    struct Case
+    {
+        float base, metallic, roughness;
+    };
+    for (const Case& of : {Case{0.7f, 1.0f, 0.5f}, {0.9f, 1.0f, 0.6f}, {0.05f, 0.0f, 0.5f}, {0.5f, 0.0f, 0.6f}})
+    {
+        Scene scene; // a slab hides the bulb and the ceiling that it lights from the probe below
+        MeshBuilder mesh(scene);
+        const uint32_t white = mesh.material("white", vec3(0.8f), 1.0f), other = mesh.material("other", vec3(of.base), of.roughness);
+        scene.materials[other].metallic = of.metallic;
+        mesh.quad({-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, white);
+        mesh.quad({-2, 3, -2}, {2, 3, -2}, {2, 3, 2}, {-2, 3, 2}, other);
+        mesh.quad({-2, 0, -2}, {2, 0, -2}, {2, 3, -2}, {-2, 3, -2}, white);
+        mesh.quad({-2, 0, -2}, {-2, 3, -2}, {-2, 3, 2}, {-2, 0, 2}, white);
+        mesh.quad({2, 0, -2}, {2, 0, 2}, {2, 3, 2}, {2, 3, -2}, white);
+        mesh.quad({-2, 0, 2}, {-2, 3, 2}, {2, 3, 2}, {2, 0, 2}, white);
+        mesh.box(vec3(-1.5f, 1.9f, -1.5f), vec3(1.5f, 2.0f, 1.5f), mesh.material("black", vec3(0.0f), 1.0f));
+        scene.lights.push_back(test::light(LightType::point, vec3(0.0f, 2.3f, 0.0f), vec3(0.0f, -1.0f, 0.0f), 10.0f));
+        const vec3 below(0.1f, 1.0f, 0.2f), above(0.0f, 2.6f, 0.0f);
+        double light[2] = {};
+        for (const bool seen : {false, true})
+            for (const Texel& texel : texelsOf(bake(scene, seen ? std::vector<vec3>{below, above} : std::vector<vec3>{below}, 1), 0))
+                light[seen] += double(texel.light.g);
+        const std::string name = "base " + std::to_string(of.base) + ", metallic " + std::to_string(of.metallic);
+        RecordProperty(name, std::to_string(light[0] / light[1]));
+        EXPECT_NEAR(light[0] / light[1], 1.0, 0.05) << name;
+    }
+}
+
+// Rays that meet a lamp have met what is there of it: half of it is there, and half of the rays go on.
+TEST_F(TriangleGathering, AHalfTransparentLampIsAsBrightNearAsFar)
+{
+    double light[2] = {};
+    for (const bool blended : {false, true})
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        mesh.quad({-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, mesh.material("black", vec3(0.0f), 1.0f));
+        const uint32_t lamp = mesh.emitter("lamp", vec3(blended ? 4.0f : 2.0f));
+        scene.materials[lamp].blended = blended;
+        scene.materials[lamp].baseColor.a = blended ? 0.5f : 1.0f;
+        mesh.quad({-0.5f, 0.04f, -0.5f}, {0.5f, 0.04f, -0.5f}, {0.5f, 0.04f, 0.5f}, {-0.5f, 0.04f, 0.5f}, lamp);
+        size_t count = 0;
+        for (const Texel& texel : texelsOf(bake(scene, {vec3(0.0f, 0.02f, 0.0f)}, 0), 0))
+            if (texel.normal.y > 0.9f && std::max(std::abs(texel.position.x), std::abs(texel.position.z)) < 0.4f)
+                light[blended] += double(texel.light.g), ++count;
+        EXPECT_GT(count, 5u);
+        light[blended] /= double(std::max<size_t>(count, 1));
+    }
+    RecordProperty("ratio", std::to_string(light[1] / light[0]));
+    EXPECT_NEAR(light[1] / light[0], 1.0, 0.05);
+}
+
 // The foot of a wall before which the sun lights a strip of ground, and nothing else: most rays leave the scene, and tell nothing of how
 // far light is the same. The strip's form factor at a height is Howell's, "A Catalog of Radiation Heat Transfer Configuration Factors", B-5
 // (infinite along).

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -53,6 +54,40 @@ TEST(LightList, ADimLampInTheNextRoomHasPatchesThatCarryItsPower)
         (light.intensity.g > 1.0f ? bright : dim) += double(light.area) * space.scale * space.scale * light.intensity.g;
     EXPECT_NEAR(bright, 30.0, 0.03 * 30.0);
     EXPECT_NEAR(dim, 0.1, 0.05 * 0.1);
+}
+
+// Samples fall on lamps by whole numbers: of lamps that get 2.56 of them each, some once had 0.78 of their light and others 1.17; of more
+// lamps than samples half had none, and lit nothing beyond some of their widths.
+TEST(LightList, EachOfManyEqualLampsCarriesItsOwnPower)
+{
+    struct Case
+    {
+        uint32_t lamps, samples;
+        bool maps;
+    };
+    for (const Case& of : {Case{400, 1024, false}, {700, 1024, false}, {2000, 1024, false}, {20, 64, true}})
+    {
+        Scene scene;
+        MeshBuilder mesh(scene);
+        const uint32_t lamp = mesh.emitter("lamp", vec3(2.0f));
+        for (uint32_t i = 0; i < of.lamps; ++i)
+        {
+            const vec3 at(5.0f * float(i % 50), 0.0f, 5.0f * float(i / 50));
+            mesh.quad(at, at + vec3(1, 0, 0), at + vec3(1, 0, 1), at + vec3(0, 0, 1), lamp);
+        }
+        const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+        const LightList list = buildLightList(scene, space, {.emitterSamples = of.samples, .skySamples = 0, .areaShadows = of.maps});
+        EXPECT_GE(list.header.emitterCount, of.samples);
+        EXPECT_LE(list.header.emitterCount, of.maps ? of.samples : of.samples + of.lamps);
+        std::vector<double> carried(of.lamps);
+        for (const gpu::GpuLight& light : list.lights)
+        {
+            const vec3 at = space.origin + space.scale * light.position;
+            carried[size_t(at.x / 5.0f) + 50 * size_t(at.z / 5.0f)] += double(light.area) * space.scale * space.scale;
+        }
+        EXPECT_NEAR(*std::ranges::min_element(carried), 1.0, 1e-3) << of.lamps << " lamps";
+        EXPECT_NEAR(*std::ranges::max_element(carried), 1.0, 1e-3) << of.lamps << " lamps";
+    }
 }
 
 TEST(LightList, EmitterPatchesLieInsideTheLampAndAverageToItsCentre)
