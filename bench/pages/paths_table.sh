@@ -39,7 +39,7 @@ load = lambda end: json.load(open(f"{at}.{end}.json"))
 row = {"label": f"{name}, {count}"}
 for bounces, called in ((0, "1"), (1, "2"), (3, "4"), (16, "all")):
     of = load(str(bounces))
-    ours, theirs = of["ours"], of["path_tracer"]
+    ours, theirs = of["ours"], of.get("path_tracer")
     for layer in ("diffuse", "glossy"):
         found = ours[f"{layer}_indirect"]
         row |= {f"{layer}_mean_{called}": f"{found['mean']:.3f}", f"{layer}_relmse_{called}": f"{found['relmse']:.4f}", f"{layer}_endless_{called}": f"{found['relmse_of_endless']:.4f}"}

@@ -84,6 +84,7 @@ Result<FieldData> KeptFields::fieldFor(const PointSettings& settings, Json& cost
         lender.chart = gpu::kChartCube;
         lender.resolution = settings.lightResolution;
         lender.surfaceTexels = settings.surfaceTexels;
+        lender.bounces = std::max(bake.bounces, 1u) - 1; // what is lent is scattered once more, see lendingBake()
         Json lent = Json::object();
         auto light = baked(*probes, lender, settings.fieldGather, "", lent, progress);
         if (light && !light->lamps.empty()) // which opponents don't know

@@ -106,7 +106,9 @@ std::string SceneBench::pointKey(const PlannedPoint& point) const
                 {"seed", s.seed},
                 {"frames", s.frames}};
     if (point.settings.frame.roughness) all["roughness"] = *point.settings.frame.roughness;
-    if (point.settings.opponent()) all["light"] = point.settings.lightResolution;
+    if (point.settings.opponent()) // what lights its maps is a field of ours
+        all["light"] = {point.settings.lightResolution, point.settings.surfaceTexels, point.settings.surfaceRays,
+                        point.settings.surfaceRefined, point.settings.fieldGather};
     return keyOf(all);
 }
 

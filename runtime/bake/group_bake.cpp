@@ -193,7 +193,9 @@ Result<FieldData> bakeLightGroups(Gpu& gpu, const Scene& scene, std::span<const 
     field->live = std::move(plan.layout.live);
     std::vector<Light> lights;
     for (const uint32_t light : plan.live) lights.push_back(scene.lights[light]);
-    const auto relit = settings.lit ? relightField(gpu, *field, lights, weights)
+    // Fewer than by default are wanted for their own sake; else light that moves settles.
+    const uint32_t bounces = settings.bounces < knobs::bounces.value ? settings.bounces : knobs::bounces.most;
+    const auto relit = settings.lit ? relightField(gpu, *field, lights, weights, bounces)
                                     : relightField(gpu, *field, {}, std::vector<vec3>(groups.size(), vec3(0.0f)));
     if (!relit) return relit.error();
     if (settings.lit) return field;

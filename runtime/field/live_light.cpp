@@ -483,7 +483,7 @@ uint64_t LiveLight::deviceBytes() const
     return owned->bytes + owned->groups.deviceBytes();
 }
 
-Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, std::span<const vec3> weights)
+Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, std::span<const vec3> weights, uint32_t mostBounces)
 {
     if (std::string fault = lightFault(lights); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
     if (auto status = mixGroups(field, weights); !status) return status;
@@ -496,18 +496,19 @@ Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, s
         auto live = makeLiveLight(gpu, *device, field);
         if (!live) return live.error();
         if (auto status = live->set({{lights.begin(), lights.end()}, {weights.begin(), weights.end()}}); !status) return status;
-        while (!live->settled())
-            if (auto status = gpu.submit([&](VkCommandBuffer cmd) { live->record(cmd, {.bounces = 1}); }); !status) return status;
+        const auto bounce = [&] { return gpu.submit([&](VkCommandBuffer cmd) { live->record(cmd, {.bounces = 1}); }); };
+        const auto take = [&](const Buffer& from, std::vector<uint32_t>& to)
+        { return to.empty() ? success() : gpu.download(from, 0, std::as_writable_bytes(std::span(to))); };
         const LightField::State& of = device->state();
-        struct Part
-        {
-            const Buffer& from;
-            std::vector<uint32_t>& to;
-        };
-        for (const Part& part : {Part{of.surface, field.surfaceLight}, Part{of.irradiance, field.irradiance},
-                                 Part{of.prefiltered, field.prefiltered}, Part{of.liveIncident, incident}})
-            if (!part.to.empty())
-                if (auto status = gpu.download(part.from, 0, std::as_writable_bytes(std::span(part.to))); !status) return status;
+        for (uint32_t done = 0; !live->settled() && done <= mostBounces; ++done) // first what they light alone
+            if (auto status = bounce(); !status) return status;
+        for (const auto& [from, to] :
+             {std::pair{&of.irradiance, &field.irradiance}, {&of.prefiltered, &field.prefiltered}, {&of.liveIncident, &incident}})
+            if (auto status = take(*from, *to); !status) return status;
+        // What arrives at surfaces has been scattered once more than what rays find there, as a bake leaves it.
+        if (!live->settled())
+            if (auto status = bounce(); !status) return status;
+        if (auto status = take(of.surface, field.surfaceLight); !status) return status;
     }
     if (field.radiance.empty()) return success();
     const uint32_t side = field.info.faceSize;

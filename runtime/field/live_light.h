@@ -49,8 +49,10 @@ Result<LiveLight> makeLiveLight(Gpu& gpu, const LightField& field, const FieldDa
 /// give the same bytes, whatever the field's were.
 /// @param field  with FieldData::live and groups; gets `lights`
 /// @param weights  of its groups
+/// @param mostBounces  of that light, before it is settled
 /// Errors: as LiveLight::set(), deviceFailure.
-Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, std::span<const vec3> weights);
+Status relightField(Gpu& gpu, FieldData& field, std::span<const Light> lights, std::span<const vec3> weights,
+                    uint32_t mostBounces = knobs::bounces.most);
 
 /// Whether two lights give the same, whatever they are called.
 bool sameLight(const Light& a, const Light& b);

@@ -222,6 +222,55 @@ TEST_F(LiveLightTest, AllLinksGiveTheLightOfTheStaticBake)
     EXPECT_NEAR(meanLight(room()), meanLight(*still), 0.03 * meanLight(*still)) << "and a quarter of them nearly so";
 }
 
+// Bounces that a bake is told to leave out are left out of the light that can move, too.
+TEST_F(LiveLightTest, ABakeOfFewBouncesHasAsFewOfItsLamps)
+{
+    const Scene scene = closedBox(0.8f);
+    const std::vector<vec3> probes{{-0.3f, 1.4f, 0.2f}};
+    const auto rays = TriangleRays::build(scene);
+    ASSERT_TRUE(rays);
+    for (const uint32_t bounces : {0u, 1u, 3u})
+    {
+        BakeSettings with = settings(0);
+        with.rays = &*rays;
+        with.bounces = bounces;
+        BakeReport report;
+        const auto still = bakeLightField(device.gpu(), scene, probes, with, {}, report);
+        with.liveLinks = 64;
+        const auto live = bakeLightGroups(device.gpu(), scene, probes, with, {}, {}, report);
+        ASSERT_TRUE(still && live);
+        const double radiance = meanRadiance(*live) / meanRadiance(*still);
+        RecordProperty(std::to_string(bounces) + " bounces: radiance", std::to_string(radiance));
+        const double light = meanLight(*live) / meanLight(*still);
+        RecordProperty(std::to_string(bounces) + " bounces: light", std::to_string(light));
+        EXPECT_NEAR(radiance, 1.0, 0.03) << bounces << " bounces";
+        EXPECT_NEAR(light, 1.0, 0.03) << bounces << " bounces";
+    }
+}
+
+// What a metal sends of light that moves, as blunt reflections read it: to all sides, not to the rays of gathering that end on it alone.
+TEST_F(LiveLightTest, PrefilteredLightOfAMetalIsTheStaticBakes)
+{
+    Scene scene = closedBox(0.8f);
+    MeshBuilder mesh(scene);
+    const uint32_t metal = mesh.material("metal", vec3(0.9f), 0.3f);
+    scene.materials[metal].metallic = 1.0f;
+    mesh.box({-1.5f, 0.2f, -1.5f}, {-0.5f, 1.2f, 1.5f}, metal);
+    const std::vector<vec3> probes{{0.4f, 1.4f, 0.2f}};
+    const auto still = baked(scene, 0, {}, probes), live = baked(scene, 64, {}, probes);
+    ASSERT_TRUE(still && live);
+    const auto mean = [](const FieldData& field)
+    {
+        double sum = 0.0;
+        for (uint32_t i = 0; i < gpu::kPrefilteredSize * gpu::kPrefilteredSize; ++i)
+            sum += double(Text::luminance(Text::unpackRadiance(field.prefiltered[i])));
+        return sum;
+    };
+    const double ratio = mean(*live) / mean(*still);
+    RecordProperty("ratio", std::to_string(ratio));
+    EXPECT_NEAR(ratio, 1.0, 0.05);
+}
+
 // In a closed room that reflects a share of all light everywhere, what bounces is that share of what is there (Sumpner 1892): direct light
 // over one minus the share, without it. Over 4,000 bounces, in 500 frames in each of which something is lit anew, it neither grows nor
 // drifts.
