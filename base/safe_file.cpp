@@ -2,10 +2,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <random>
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -44,10 +44,16 @@ Result<SafeFile> SafeFile::create(const std::filesystem::path& target)
     std::error_code ignored;
     if (target.filename().empty() || std::filesystem::is_directory(target, ignored))
         return Error{ErrorCode::fileError, fmt::format("Cannot write '{}': it names a folder; give a file name.", target.string())};
-    std::string name = (folderOf(target) / ".").string();
-    name += target.filename().string();
-    name += ".XXXXXX";
-    file.descriptor = mkostemp(name.data(), O_CLOEXEC);
+    const std::string stem = (folderOf(target) / ".").string() + target.filename().string() + ".";
+    // Not mkostemp: the process's mask of modes is the kernel's to apply, since asking for it changes it for every other thread.
+    std::random_device chance;
+    std::string name;
+    for (int tries = 0; file.descriptor < 0 && tries < 100; ++tries)
+    {
+        name = stem + fmt::format("{:08x}", chance());
+        file.descriptor = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file.descriptor < 0 && errno != EEXIST && errno != EINTR) break;
+    }
     if (file.descriptor < 0)
     {
         const int reason = errno;
@@ -56,10 +62,6 @@ Result<SafeFile> SafeFile::create(const std::filesystem::path& target)
                                  std::strerror(reason), folderOf(target).string())};
     }
     file.temporary = name;
-    // mkstemp's mode is 0600; give the file what the process's mask would have given it.
-    const mode_t mask = umask(0);
-    umask(mask);
-    if (fchmod(file.descriptor, 0666 & ~mask) != 0) return Error{ErrorCode::fileError, file.failure("setting its mode").error().message};
     return file;
 }
 

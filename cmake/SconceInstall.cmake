@@ -15,11 +15,11 @@ install(EXPORT sconce NAMESPACE sconce:: FILE sconce-targets.cmake DESTINATION $
 
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DIN=runtime/sconce.h
     -DOUT=\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${headers}/sconce.h -P ${PROJECT_SOURCE_DIR}/cmake/SconceFlatten.cmake COMMAND_ERROR_IS_FATAL ANY)" COMPONENT library)
-set(shared_headers brdf brdf_text chart color distance_block face_chain face_march field_passes frame gpu_types hidden_light lamps light_cells light_field light_lookup live_text octree_descent prefiltered
+set(shared_headers brdf brdf_text chart color distance_block face_chain face_march field_passes frame gpu_types hidden_light lamps light_cells light_field light_lookup live_text octree_descent polygon_light prefiltered
     probe_trace pure_text radiance_block ray_query ray_state refined sample_pair surface_light texel)
 list(TRANSFORM shared_headers REPLACE "(.+)" "shaders/shared/\\1.h")
 install(FILES ${shared_headers} DESTINATION ${headers}/shaders/shared COMPONENT library)
-install(FILES shaders/light_field.glsl shaders/probe_face.glsl DESTINATION ${headers}/shaders COMPONENT library)
+install(FILES shaders/light_field.glsl shaders/lamps.glsl shaders/probe_face.glsl DESTINATION ${headers}/shaders COMPONENT library)
 
 configure_package_config_file(cmake/sconce-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/sconce-config.cmake INSTALL_DESTINATION ${package}
     PATH_VARS CMAKE_INSTALL_INCLUDEDIR)

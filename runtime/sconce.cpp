@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/safe_file.h"
 #include "runtime/bake/bake.h"
 #include "runtime/bake/group_bake.h"
 #include "runtime/field/light_field.h"
@@ -38,6 +39,11 @@ Result<Device> Device::forThread() const
     return Device(std::move(*gpu));
 }
 
+Status Device::nanFindings() const
+{
+    return shared->nanFindings();
+}
+
 uint64_t Device::bytes() const
 {
     return shared->memory().used();
@@ -70,7 +76,10 @@ std::string otherField(const LightField& field, const FieldData& data, const std
     const gpu::LightFieldInfo &here = field.info(), &there = data.info;
     if (here.probeCount == there.probeCount && here.faceSize == there.faceSize && here.surfaceSize == there.surfaceSize &&
         here.refinedTexels == there.refinedTexels && here.hidden == there.hidden && field.state().groupCount == data.groups.size())
-        return {};
+        return field.state().lightHash == lightHashOf(data)
+                   ? ""
+                   : fmt::format("'{}' is of another bake of as many probes than this light field; give the file that it was loaded from",
+                                 file.string());
     return fmt::format("'{}' has {} probes of {} texels in {} light groups and is not the file of this light field, which has {} of {} in "
                        "{}; give that which it was loaded from",
                        file.string(), there.probeCount, there.faceSize, data.groups.size(), here.probeCount, here.faceSize,
@@ -114,6 +123,8 @@ Result<RayTracer> RayTracer::create(const Device& device, const LightField& fiel
 Status bakeLightField(const Device& device, const Scene& scene, std::span<const vec3> probes, const BakeDesc& desc,
                       const std::filesystem::path& file, const Progress& progress)
 {
+    // Whether the file can be written is known before hours of work, not after them.
+    if (const auto writable = SafeFile::create(file); !writable) return writable.error();
     const auto plan = planEffects(checkScene(scene), desc.effects);
     if (!plan) return plan.error();
     Scene capped = scene;
@@ -127,6 +138,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.faces = desc.faces;
     settings.liveLinks = desc.liveLinks;
     settings.lit = desc.lit;
+    settings.compact = desc.compact;
     settings.take(*plan);
     BakeReport report;
     const auto field = desc.groups.empty() && desc.liveLinks == 0 && desc.lit

@@ -5,8 +5,10 @@
 //
 // A host keeps its instance, device, queue and command buffers. What it gets are handles: they keep alive what they need, so that they may
 // be moved, copied where they can be, and destroyed in any order and on any thread, once the GPU has finished with them. Calls on one
-// Device and on what was made from it are the host's to serialise. Two Devices may be used from two threads; a thread that loads fields for
-// one that draws them has a Device of its own by Device::forThread().
+// Device and on what was made from it are the host's to serialise. Work that they record goes to HostVulkan::queue, outside rendering, in
+// the order of recording and each once, for what is recorded next relies on it: an object whose work was dropped is made anew. It leaves
+// the compute bindings, sets 0 and 1 and push constants, its own. Objects are of the Device that their field was loaded on. Two Devices may
+// be used from two threads; a thread that loads fields for one that draws them has a Device of its own by Device::forThread().
 
 #include <array>
 #include <cstdint>
@@ -56,12 +58,17 @@ class Device
 {
 public:
     /// @param header  leave it out: a library of another major or minor version than this header is refused
-    /// Errors: badArgument (a handle is missing, the version), missingFeature (named), deviceFailure.
+    /// Errors: badArgument (a handle is missing, the queue's family, the version), missingFeature (named: of the physical device; whether
+    /// the host has switched it on can't be asked), deviceFailure.
     static Result<Device> create(const HostVulkan& host, Version header = {});
     /// For another thread: with memory, its budget and compiled passes in common, so that either draws what the other has loaded. Both
     /// submit to the host's queue, which is then the host's to lock (HostVulkan::submit). Errors: outOfMemory, deviceFailure.
     Result<Device> forThread() const;
-    uint64_t bytes() const;              // of device memory that the library holds now, all threads' together
+    uint64_t bytes() const; // of device memory that the library holds now, all threads' together
+    /// Debugging, where the environment has SCONCE_NAN_SCAN=1: what passes of the library that the host has submitted since the last call
+    /// wrote of NaN and infinity. Once the GPU is done with a frame, before the next is recorded. Errors: deviceFailure (the first: pass,
+    /// buffer, place).
+    Status nanFindings() const;
     Gpu& gpu() const { return *shared; } // for the library's own folders
 
 private:
@@ -75,7 +82,7 @@ class LightField
 {
 public:
     /// Reads and uploads a .sconce file. Errors: fileError, badInput (names the damaged block, or the version), badArgument (knobs out of
-    /// range: named), outOfMemory (names the bytes), deviceFailure.
+    /// range: named), outOfMemory (names the bytes), missingFeature (a limit that it exceeds), deviceFailure.
     /// @param resident  0: all of it is on the device. Else so many probes' maps, which are nearly all of it, at a time: FieldStream reads
     /// those that
     ///                  frames ask for; without them light comes from what is known in the open. badArgument where light is in groups or
@@ -171,7 +178,8 @@ class LightGroups
 {
 public:
     /// Uploads the groups' shares. @param file  that `field` was loaded from
-    /// Errors: as LightField::load(), and badArgument where the file has no groups, or is of another field.
+    /// Errors: as LightField::load(), and badArgument where the file has no groups or is of another field, or the field has LightGroups or
+    /// LiveLight, which switches groups itself.
     static Result<LightGroups> load(const Device& device, const LightField& field, const std::filesystem::path& file);
     LightGroups(LightGroups&&) noexcept;
     LightGroups& operator=(LightGroups&&) noexcept;
@@ -224,7 +232,8 @@ public:
     /// Uploads what light needs to move. Before IndirectLight and whatever else traces the field is made, since that then looks for live
     /// light. Light begins as black where it is live, and is settled once settled() says so.
     /// @param file  that `field` was loaded from
-    /// Errors: as LightField::load(), and badArgument where the file has no live links, or is of another field.
+    /// Errors: as LightField::load(), and badArgument where the file has no live links or is of another field, or the field has LightGroups
+    /// or LiveLight.
     static Result<LiveLight> load(const Device& device, const LightField& field, const std::filesystem::path& file);
     LiveLight(LiveLight&&) noexcept;
     LiveLight& operator=(LiveLight&&) noexcept;
@@ -297,13 +306,14 @@ public:
         VkFormat format = VK_FORMAT_UNDEFINED;
     };
 
-    /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, deviceFailure.
+    /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, missingFeature, deviceFailure.
     static Result<IndirectLight> create(const Device& device, const LightField& field, const Desc& desc);
     IndirectLight(IndirectLight&&) noexcept;
     IndirectLight& operator=(IndirectLight&&) noexcept;
     ~IndirectLight();
 
-    /// Binds the G-buffer; before the first record and whenever its views change. Not while the GPU runs a recorded frame.
+    /// Binds the G-buffer; before the first record and whenever its views change. Not between a record and the end of what it recorded on
+    /// the GPU. Views are not null.
     void setInputs(const FrameInputs& inputs);
     /// What moves, from the next recorded frame on; none before the first call. With the effect `temporal`, FrameView::follows =
     /// kFollowsChange while anything moves. Cost: of a pixel grows with the shapes within 16 times their size of its tile; a ray asks every
@@ -313,6 +323,7 @@ public:
     /// Record frames in the order in which they are shown, where the effect `temporal` is on. The G-buffer must be visible to compute
     /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
     /// any later stage read these.
+    /// @param view  of Desc's size, which is drawn whatever it says; LightField::frameView() gives it every default
     /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace",
     ///               "diffuse fill", "glossy fill", "glossy denoise", "moving shapes", "lamp light"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
@@ -382,7 +393,8 @@ struct BakeDesc
     const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
     uint32_t liveLinks = knobs::liveLinks.value;    // of each surface texel, so that LiveLight moves lights; 0: they stay
     float submissionMs = knobs::submissionMs.value; // that the device is held at once at most, as far as passes can be cut
-    bool lit = true;                    // false: geometry and material alone, with live links: no light until LiveLight has recorded
+    bool compact = false; // maps in blocks: 0.4 of their memory, and rays, which unpack them, take longer; without liveLinks and groups
+    bool lit = true;      // false: geometry and material alone, with live links: no light until LiveLight has recorded
     ProbeFaces* faces = nullptr;        // draws what probes see, without liveLinks and groups; null: the scene's triangles are drawn
     std::vector<LightGroupDesc> groups; // that LightGroups changes; all other light is one more; none: all light is one, as it is baked
 };

@@ -137,8 +137,9 @@ RayHit sconceQuery(vec3 origin, vec3 direction, vec3 normal) { return queryRay(o
 vec3 sconceFieldPoint(vec3 point) { return (point - field.origin) / field.scale; }
 vec3 sconceLookUp(vec3 point, vec3 facing) { return sconceFieldPoint(point) + 0.5 * field.voxel * facing; }
 
-/// Mean of the radiance that arrives at a surface, weighted by the cosine, of all light but the host's own: of a field with surface light
-/// (field.surfaceSize > 0). What moves is lit by what is known in the open about it. Cost: about 25 reads.
+/// Mean of the radiance that arrives at a surface, weighted by the cosine, of all light but the host's own and what comes straight from the field's
+/// lamps, which sconceLampLightAt() of lamps.glsl adds (rays don't meet lamps either): of a field with surface light (field.surfaceSize > 0). What
+/// moves is lit by what is known in the open about it. Cost: about 25 reads.
 /// @param normal  for shading, unit
 /// @param facing  of the surface itself, unit, on the side that is looked at
 vec3 sconceLightAt(vec3 point, vec3 normal, vec3 facing)

@@ -15,6 +15,7 @@ layout(scalar, set = 0, binding = 0) uniform Block
     float shadowTexel; // metres
     vec3 toSun;
     uint made; // terms of indirect light
+    float raysBelow; // of its frames
     vec3 sunIrradiance;
     vec3 sky;
 };
@@ -56,7 +57,7 @@ void main()
         BrdfValue value = evaluateLobes(lobesAt(surface, nv), surface.roughness, normal, view, toSun);
         float nl = max(dot(normal, toSun), 0.0);
         direct = texelFetch(emissions, at, 0).rgb + nl * sunSeen(point, normal) * sunIrradiance * (value.diffuse + value.specular);
-        indirectLight(at, surface, nv, made, scattered, reflected);
+        indirectLight(at, surface, nv, made, raysBelow, scattered, reflected);
     }
     imageStore(directPicture, at, vec4(direct, 1.0));
     imageStore(scatteredPicture, at, vec4(scattered, 1.0));

@@ -16,6 +16,7 @@ struct Block
     float shadowTexel;
     glm::vec3 toSun;
     uint32_t made;
+    float raysBelow;
     glm::vec3 sunIrradiance;
     glm::vec3 sky;
 };
@@ -104,6 +105,7 @@ void Lighting::record(vk::CommandBuffer cmd, const Camera& camera, Convention co
     values.shadowTexel = shadow.texel();
     values.toSun = -sun.along;
     values.made = indirect.made;
+    values.raysBelow = indirect.raysBelow;
     values.sunIrradiance = sun.irradiance;
     values.sky = indirect.sky;
     wait(Stage::eComputeShader, Access::eNone, Stage::eAllTransfer, Access::eTransferWrite); // the frame before reads its own block

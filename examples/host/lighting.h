@@ -16,6 +16,7 @@ public:
     {
         std::array<VkImageView, 4> terms;
         uint32_t made = 0;
+        float raysBelow = 0.0f;
         glm::vec3 sky{0.0f};
     };
 

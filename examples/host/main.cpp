@@ -140,7 +140,7 @@ void draw(const Vulkan& vulkan, Allocators& lent, const Options& options)
         std::fprintf(stderr, "host: '%s' holds no surface light, and this host draws no light straight from lamps and sky: it is missing\n",
                      options.field.c_str());
     gi.setGBuffer({*gbuffer.depth.view, *gbuffer.normalRoughness.view, *gbuffer.baseColorMetallic.view});
-    lighting.setInputs(gbuffer, shadow, {gi.terms(lighting.nothing()), gi.made(), gi.sky()});
+    lighting.setInputs(gbuffer, shadow, {gi.terms(lighting.nothing()), gi.made(), gi.raysBelow, gi.sky()});
     for (uint32_t frame = 0; frame < options.frames; ++frame)
         vulkan.run(
             [&](vk::CommandBuffer cmd)

@@ -51,6 +51,7 @@ void SconceGi::record(VkCommandBuffer cmd, const Camera& camera, Convention conv
     own.worldFromClip = glm::inverse(clipFrom(camera));
     own.eye = camera.eye;
     own.seed = seed;
+    own.raysBelow = raysBelow;
     if (before)
     {
         own.follows = 1;

@@ -7,10 +7,11 @@ layout(set = 0, binding = GI_BINDING + 3) uniform texture2D giMirror;
 
 /// Radiance that a pixel's surface sends to the eye of indirect light.
 /// @param nv    cosine of the eye to the normal
-/// @param made  IndirectLight::made()
-void indirectLight(ivec2 at, BrdfSurface surface, float nv, uint made, out vec3 scattered, out vec3 reflected)
+/// @param made       IndirectLight::made()
+/// @param raysBelow  FrameView::raysBelow
+void indirectLight(ivec2 at, BrdfSurface surface, float nv, uint made, float raysBelow, out vec3 scattered, out vec3 reflected)
 {
-    IndirectSent sent = composeIndirect(surface, nv, kRaysBelow, made, texelFetch(giDiffuse, at, 0).rgb, texelFetch(giRough, at, 0).rgb,
+    IndirectSent sent = composeIndirect(surface, nv, raysBelow, made, texelFetch(giDiffuse, at, 0).rgb, texelFetch(giRough, at, 0).rgb,
                                         texelFetch(giGlossy, at, 0).rgb, texelFetch(giMirror, at, 0).rgb);
     scattered = sent.scattered;
     reflected = sent.reflected;

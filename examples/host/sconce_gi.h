@@ -38,6 +38,7 @@ public:
     /// Diffuse, rough, glossy and mirror, in layout General, as sconce_gi.glsl binds them. @param nothing  in place of what is not made
     std::array<VkImageView, 4> terms(VkImageView nothing) const;
     uint32_t made() const { return light->made(); } // bits of those that are
+    float raysBelow = sconce::gpu::kRaysBelow;      // roughness below which reflections are traced; quality levels have their own
     glm::vec3 sky() const { return field->info().sky; }
     /// Whether diffuse light has emitters and sky in it; else they are the host's to draw, as the sun is.
     bool hasAllDiffuse() const { return field->holdsSurfaceLight(); }

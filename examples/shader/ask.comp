@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "light_field.glsl"
+#include "lamps.glsl"
 #include "ask.h"
 #if SCONCE_GLSL_VERSION != 1
 #error "written for version 1 of light_field.glsl: read its change note"
@@ -16,7 +17,8 @@ void main()
 {
     Answer a;
     a.arriving = vec3(-1.0);
-    if (field.surfaceSize > 0u) a.arriving = sconceLightAt(question.point, question.normal, question.normal);
+    if (field.surfaceSize > 0u)
+        a.arriving = sconceLightAt(question.point, question.normal, question.normal) + sconceLampLightAt(question.point, question.normal, question.normal);
     a.reflected = sconceIrradianceAt(question.point, question.normal);
 
     // Rays start a little off their surface.

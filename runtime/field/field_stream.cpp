@@ -189,6 +189,7 @@ Result<FieldStream> FieldStream::create(const Device& device, const LightField& 
 
 Result<FieldStream> makeFieldStream(Gpu& gpu, const LightField& field, const FieldStream::Desc& desc)
 {
+    if (auto status = checkDevice(gpu, field); !status) return status.error();
     MapPool* const pool = field.state().maps.get();
     if (!pool) return Error{ErrorCode::badArgument, "the light field is whole; load it with `resident` above 0, or leave the stream out"};
     if (pool->fed) return Error{ErrorCode::badArgument, "the light field has a stream; one is enough for all views of it"};
@@ -212,6 +213,7 @@ Result<FieldStream> makeFieldStream(Gpu& gpu, const LightField& field, const Fie
     state->filledAt.assign(pool->slots, 0);
     pool->fed = true;
     state->fed.reset(pool);
+    state->forgets = std::exchange(pool->used, true);
     return FieldStream(std::move(state));
 }
 
@@ -232,6 +234,23 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
         state.slotOfProbe[probe] = slot;
         gpu.vk.CmdUpdateBuffer(cmd, pool.slotOfProbe.handle(), probe * sizeof(uint32_t), sizeof(uint32_t), &slot);
     };
+    bool begun = false;
+    const auto begin = [&]
+    {
+        if (std::exchange(begun, true)) return;
+        if (timer) timer->begin(cmd, "stream maps");
+        // Write after read: whoever traced through the maps in work submitted before has done so.
+        memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                      VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    };
+    if (std::exchange(state.forgets, false))
+    {
+        begin();
+        gpu.vk.CmdFillBuffer(cmd, pool.slotOfProbe.handle(), 0, VK_WHOLE_SIZE, gpu::kNoProbe);
+        // Write after write: slots are set below.
+        memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                      VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    }
     uint32_t copied = 0;
     while (copied < state.desc.probesAFrame)
     {
@@ -240,13 +259,7 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
         const uint32_t slot = state.slotOfProbe[maps->probe] == gpu::kNoProbe ? state.slotFor(maps->probe, eye) : gpu::kNoProbe;
         if (slot != gpu::kNoProbe)
         {
-            if (copied == 0)
-            {
-                if (timer) timer->begin(cmd, "stream maps");
-                // Write after read: whoever traced through the maps in work submitted before has done so.
-                memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                              VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-            }
+            begin();
             const VkDeviceSize from = (first + copied) * (distanceBytes + radianceBytes);
             std::memcpy(state.staging.mapped() + from, maps->words.data(), distanceBytes + radianceBytes);
             const VkBufferCopy distance{from, slot * distanceBytes, distanceBytes},
@@ -261,7 +274,7 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
         }
         state.reader->giveBack(std::move(*maps));
     }
-    if (copied > 0)
+    if (begun)
     {
         // Read after write, by whatever stage of the host asks the field.
         memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

@@ -78,6 +78,7 @@ struct FieldStream::State
     vec3 eyeBefore{0.0f};                          // of the last record
     std::array<uint32_t, 2> nearby{};              // probes nearest to the eye, and to where it will be: worthier than all
     uint64_t records = 0;
+    bool forgets = false; // the next record clears the slots that another stream has filled
     Counts counts;
 
     void noteAsked();

@@ -208,6 +208,7 @@ Result<LightField> makeField(Gpu& gpu, const FieldData& field, const Quality& qu
     made.sceneName = field.sceneName;
     made.headers = field.probes;
     made.groupCount = uint32_t(field.groups.size());
+    made.lightHash = lightHashOf(field);
     const auto parts = partsOf(made, field, pool.get());
     // All or none: one way of reading is compiled into each shader.
     made.byTexels =
@@ -240,6 +241,14 @@ Result<LightField> makeStreamedField(Gpu& gpu, const FieldData& field, MapFile m
     auto pool = makePool(gpu, std::move(maps), resident, probes);
     if (!pool) return pool.error();
     return makeField(gpu, field, quality, WordAccess::texelBuffers, std::move(*pool));
+}
+
+Status checkDevice(const Gpu& gpu, const LightField& field)
+{
+    if (field.state().gpu->host.device == gpu.host.device) return success();
+    return Error{ErrorCode::badArgument,
+                 fmt::format("the light field of scene '{}' was loaded on another Vulkan device; load it on the one that it is used with",
+                             field.sceneName())};
 }
 
 Status LightField::State::setQuality(const Quality& quality)
@@ -388,6 +397,7 @@ RayTracer::RayTracer(std::shared_ptr<State> made) : shared(std::move(made)) {}
 
 Result<RayTracer> makeRayTracer(Gpu& gpu, const LightField& field, RayShaders shaders)
 {
+    if (auto status = checkDevice(gpu, field); !status) return status.error();
     if (shaders.plain.empty()) shaders = {trace_rays_comp, trace_rays_refilled_comp};
     const VkDescriptorSetLayout layouts[] = {field.layout()};
     const auto constants = shaderConstants(field);

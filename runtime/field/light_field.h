@@ -18,6 +18,7 @@ struct MapPool
     Buffer slotOfProbe; // kNoProbe: not there
     Buffer asked;       // a count for each probe, of passes, taken and cleared by the host
     bool fed = false;   // a FieldStream has it
+    bool used = false;  // one has had it: slotOfProbe may tell of maps that the next one doesn't know of
 };
 
 /// What stands behind the handle LightField.
@@ -27,6 +28,8 @@ struct LightField::State
     gpu::LightFieldInfo info{};
     Buffer block, probes, distance, radiance, irradiance, prefiltered, surface, patches, lamps;
     uint32_t lampCount = 0, groupCount = 0;
+    bool mixed = false;              // LightGroups or LiveLight write its light, of which there is one
+    uint64_t lightHash = 0;          // lightHashOf() what it was made of
     Buffer liveIncident, liveAlbedo; // of LiveLight, which passes that it was made before go on reading; none: light is static
     vec3 radianceWeight{1.0f};       // see gpu::FieldBlock
     bool readsFarBounds = false, radianceHeld = false, patchesHeld = false, byTexels = false;
@@ -60,6 +63,9 @@ Result<LightField> makeStreamedField(Gpu& gpu, const FieldData& field, MapFile m
 
 /// LightField::constants() as pipelines take them.
 std::array<ShaderConstant, 2> shaderConstants(const LightField& field);
+
+/// Says so where a field is of another device than what is to read it. Errors: badArgument.
+Status checkDevice(const Gpu& gpu, const LightField& field);
 
 /// What stands behind the handle RayTracer.
 struct RayTracer::State

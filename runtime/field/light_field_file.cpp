@@ -944,6 +944,17 @@ Result<FieldData> loadField(const std::filesystem::path& file)
     return guarded(file, [&] { return loadChecked(file); });
 }
 
+uint64_t lightHashOf(const FieldData& field)
+{
+    uint64_t hash = 0;
+    const auto add = [&hash](const auto& items) { hash = XXH3_64bits_withSeed(items.data(), items.size() * sizeof items[0], hash); };
+    add(field.probes);
+    add(field.irradiance);
+    add(field.prefiltered);
+    add(field.surfaceLight);
+    return hash;
+}
+
 struct MapFile::State
 {
     Reader reader;

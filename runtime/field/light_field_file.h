@@ -34,6 +34,9 @@ Status saveField(const FieldData& field, const std::filesystem::path& file);
 /// Errors: fileError (cannot be read), badInput (names the damaged block, or the version), outOfMemory.
 Result<FieldData> loadField(const std::filesystem::path& file);
 
+/// Of the light and the places of a field's probes, but for what rays find: tells whether two are of one bake.
+uint64_t lightHashOf(const FieldData& field);
+
 /// The maps of an open .sconce file, read a probe at a time: distance and radiance, which are nearly all of it. Move-only; one thread at a
 /// time.
 class MapFile

@@ -108,9 +108,15 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
     if (data.groups.empty())
         return Error{ErrorCode::badArgument,
                      fmt::format("the light field of scene '{}' has no light groups; bake it with some", data.sceneName)};
+    if (auto status = checkDevice(gpu, field); !status) return status.error();
+    LightField::State& of = field.state();
+    if (of.mixed || of.liveIncident.address() != 0)
+        return Error{ErrorCode::badArgument,
+                     fmt::format("the light of the field of scene '{}' has light groups or live light already, which would write over what "
+                                 "these do; use those, or load the field once more",
+                                 data.sceneName)};
     auto state = std::make_unique<LightGroups::State>(LightGroups::State{gpu.shared_from_this(), field});
     LightGroups::State& made = *state;
-    const LightField::State& of = field.state();
     for (const LightGroup& group : data.groups) made.groups.push_back({group.which, group.sky, group.lamps, {}, {}, {}, {}});
     made.weights.assign(data.groups.size(), vec3(1.0f));
     const Buffer* const targets[] = {&of.radiance, &of.irradiance, &of.prefiltered, &of.surface};
@@ -143,6 +149,9 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
     auto pipeline = Pipeline::compute(gpu, mix_groups_comp, layouts, sizeof(gpu::MixPush), shaderConstants(field));
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
+    made.changed = true; // the field's light may be another mix than the one that set() has not been told to change yet
+    of.mixed = true;
+    made.mixes = {&of, [](LightField::State* mixed) { mixed->mixed = false; }};
     return LightGroups(std::move(state));
 }
 

@@ -37,6 +37,7 @@ struct LightGroups::State
     std::vector<vec3> weights;
     bool changed = false; // since the last record
     uint64_t bytes = 0;
+    std::unique_ptr<LightField::State, void (*)(LightField::State*)> mixes{nullptr, nullptr}; // the field's; last: it goes before the field
 };
 
 /// @param data  that `field` was made from

@@ -28,14 +28,15 @@ struct Quality
 };
 
 /// A named choice of every knob but the number of probes, with what it was measured to cost (docs/accuracy.md). A host bakes with the first
-/// three (and with radiance, where `tracedDiffuse`), makes its LightField with `quality`, and draws with the rest.
+/// three (and with radiance, where `tracedDiffuse`), loads its LightField with `quality`, and draws with the rest: `glossyRays` and
+/// `raysBelow` are FrameView's, `raysBelow` goes to composeIndirect(), too, and `areaSamples` is of the command's frames alone.
 struct QualityLevel
 {
     std::string_view name;  // mobile, draft, low, medium, high, reference
     uint32_t resolution;    // of the bake, texels
     uint32_t bounces;       // of the bake
     bool compact;           // of the bake
-    Quality quality;        // of LightField::create
+    Quality quality;        // of LightField::load
     uint32_t glossyRays;    // a pixel
     uint32_t traceEvery;    // pixels for each that is traced
     uint32_t surfaceProbes; // blended at a look-up

@@ -1,5 +1,6 @@
 #include "runtime/frame/indirect_light.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include <fmt/format.h>
@@ -272,6 +273,7 @@ Status IndirectLight::State::make()
 
 Result<IndirectLight> makeIndirectLight(Gpu& gpu, const LightField& field, const IndirectLight::Desc& desc, const LightShaders& passes)
 {
+    if (Status status = checkDevice(gpu, field); !status) return status.error();
     auto state = std::make_unique<IndirectLight::State>(gpu, field, desc, passes);
     if (Status status = state->make(); !status) return status.error();
     if (field.state().lampCount > 0)
@@ -489,9 +491,14 @@ void IndirectLight::State::Recording::end()
 
 void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer) noexcept
 {
-    assert(knobs::glossyRays.inRange(view.glossyRays)); // more would be the same rays again
+    // Lists and images are of the size that all was made for, and more rays would be the same ones again.
+    gpu::FrameView own = view;
+    own.size = {desc.width, desc.height};
+    own.glossyRays = std::clamp(view.glossyRays, knobs::glossyRays.least, knobs::glossyRays.most);
+    if (own.fieldFromNormals == mat3(0.0f)) own.fieldFromNormals = mat3(1.0f); // of a view that was filled by hand
+    assert(own.size == view.size && own.glossyRays == view.glossyRays);
     Recording recording(*this, cmd, timer);
-    recording.begin(view);
+    recording.begin(own);
     recording.classify();
     recording.moveShapes();
     recording.lookUps();

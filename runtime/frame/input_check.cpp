@@ -334,6 +334,7 @@ Result<std::vector<std::string>> checkInputs(Gpu& gpu, const LightField& field, 
         return Error{ErrorCode::badArgument,
                      fmt::format("A FrameView of {} x {} pixels{} shows nothing; begin with LightField::frameView()", view.size.x,
                                  view.size.y, isFinite(view.worldFromClip) ? "" : ", whose worldFromClip isn't finite,")};
+    if (Status status = checkDevice(gpu, field); !status) return status.error();
     const std::vector<Meaning> meanings = meaningsOf(view.worldFromClip);
     std::vector<gpu::InputGuess> guesses;
     for (const Meaning& meaning : meanings) guesses.push_back(meaning.guess);

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include <fmt/format.h>
+
 #include "spirv/classify_tiles_comp.h"
 
 namespace sconce
@@ -22,8 +24,14 @@ Result<TileList> TileList::create(Gpu& gpu, const Buffer& frame, const Desc& des
     made.across = (desc.width + gpu::kTileSide - 1) / gpu::kTileSide;
     made.down = (desc.height + gpu::kTileSide - 1) / gpu::kTileSide;
     const VkDeviceSize words = VkDeviceSize(gpu::kTermCount + gpu::kTileSide + 64 * desc.lookUps.size()) * made.across * made.down;
-    auto lists =
-        gpu.makeBuffer(kRuns * sizeof(gpu::TileRuns) + 4 * words, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
+    const VkDeviceSize bytes = kRuns * sizeof(gpu::TileRuns) + 4 * words;
+    if (bytes > gpu.properties.limits.maxStorageBufferRange)
+        return Error{
+            ErrorCode::badArgument,
+            fmt::format("what a frame of {} x {} pixels looks up takes {} bytes, and {} reads at most {} of a buffer; draw it in parts or "
+                        "smaller",
+                        desc.width, desc.height, bytes, gpu.properties.deviceName, gpu.properties.limits.maxStorageBufferRange)};
+    auto lists = gpu.makeBuffer(bytes, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryUse::device, "tile lists");
     if (!lists) return lists.error();
     made.lists = std::move(*lists);
     auto packed = makeLightImage(gpu, VK_FORMAT_R32G32_UINT, desc.width, desc.height, "packed pixels");

@@ -88,6 +88,14 @@ Result<std::shared_ptr<Gpu>> Gpu::create(const HostVulkan& host)
     if (host.queueFamily >= familyCount)
         return Error{ErrorCode::badArgument,
                      fmt::format("HostVulkan::queueFamily is {} but the device has {} families", host.queueFamily, familyCount)};
+    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    if ((family[host.queueFamily].queueFlags & kNeeded) != kNeeded)
+        return Error{ErrorCode::badArgument,
+                     fmt::format("HostVulkan::queueFamily {} of {} has no graphics or no compute; lend a queue of a family with both",
+                                 host.queueFamily, gpu->properties.deviceName)};
+    if (const auto missing = missingFeatures(host.getInstanceProcAddr, host.instance, host.physicalDevice); !missing.empty())
+        return Error{ErrorCode::missingFeature,
+                     fmt::format("{} lacks {}; lend another device", gpu->properties.deviceName, fmt::join(missing, ", "))};
     gpu->timestamps = family[host.queueFamily].timestampValidBits > 0;
     VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
     VkPhysicalDeviceProperties2 more{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
@@ -302,6 +310,11 @@ Status Gpu::submit(const std::function<void(VkCommandBuffer)>& record)
     if (result != VK_SUCCESS) return failure("vkWaitForFences", result);
     longestSeconds = std::max(longestSeconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
     // Read after the fence: only now have the scans run.
+    return nanFindings();
+}
+
+Status Gpu::nanFindings()
+{
     return scan ? scan->findings() : success();
 }
 

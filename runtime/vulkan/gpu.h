@@ -152,6 +152,7 @@ public:
                                                         const std::function<Result<std::shared_ptr<const void>>(Gpu&)>& make);
 
     Error failure(const char* call, VkResult result) const;
+    Status nanFindings(); // NanScan::findings(), where there is one
 
 private:
     explicit Gpu(const HostVulkan& lent);

@@ -1,7 +1,5 @@
 #include "runtime/vulkan/gpu_timer.h"
 
-#include <cassert>
-
 #include "runtime/vulkan/gpu.h"
 
 namespace sconce
@@ -22,6 +20,7 @@ GpuTimer::~GpuTimer() = default;
 
 Result<GpuTimer> GpuTimer::create(Gpu& gpu, uint32_t maxScopes)
 {
+    if (maxScopes == 0) return Error{ErrorCode::badArgument, "maxScopes is 0; give the number of stretches to time, or leave it out"};
     auto made = std::make_unique<State>();
     made->gpu = gpu.shared_from_this();
     made->names.resize(maxScopes);
@@ -44,7 +43,7 @@ void GpuTimer::reset(VkCommandBuffer cmd)
 
 void GpuTimer::begin(VkCommandBuffer cmd, const char* name)
 {
-    assert(state->used < state->names.size());
+    if (state->used == state->names.size()) return;
     state->names[state->used] = name;
     // All commands before must be done: the stretch is that of its own passes alone.
     if (state->queries) state->gpu->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, state->queries.get(), 2 * state->used);
@@ -52,6 +51,7 @@ void GpuTimer::begin(VkCommandBuffer cmd, const char* name)
 
 void GpuTimer::end(VkCommandBuffer cmd)
 {
+    if (state->used == state->names.size()) return;
     if (state->queries)
         state->gpu->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, state->queries.get(), 2 * state->used + 1);
     ++state->used;

@@ -14,13 +14,17 @@ namespace sconce
 class Device;
 class Gpu;
 
-/// Milliseconds on the GPU of named stretches of a command buffer. Names must be literals. Recording never allocates.
+/// Scopes of one record of each of the library's objects, and as many again of the host's own.
+inline constexpr uint32_t kScopesOfAFrame = 48;
+
+/// Milliseconds on the GPU of named stretches of a command buffer, one after the other. Names must be literals. Recording never allocates.
 class GpuTimer
 {
 public:
-    /// Without timestamps in the queue it is made all the same, and read() gives nothing. Errors: deviceFailure, outOfMemory.
-    static Result<GpuTimer> create(const Device& device, uint32_t maxScopes);
-    static Result<GpuTimer> create(Gpu& gpu, uint32_t maxScopes);
+    /// Without timestamps in the queue it is made all the same, and read() gives nothing. Errors: badArgument, deviceFailure, outOfMemory.
+    /// @param maxScopes  between two resets, above 0; further ones are not timed
+    static Result<GpuTimer> create(const Device& device, uint32_t maxScopes = kScopesOfAFrame);
+    static Result<GpuTimer> create(Gpu& gpu, uint32_t maxScopes = kScopesOfAFrame);
 
     GpuTimer(GpuTimer&&) noexcept;
     GpuTimer& operator=(GpuTimer&&) noexcept;

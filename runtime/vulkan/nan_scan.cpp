@@ -172,7 +172,8 @@ Status NanScan::findings()
         }
     }
     if (first.empty() && tooMany)
-        first = fmt::format("More than {} scans for NaN were recorded for one submit; the later ones were left out. Submit less at once",
+        first = fmt::format("More than {} scans for NaN were recorded since it was last asked what they found; the later ones were left "
+                            "out. Ask Device::nanFindings() after each frame, or submit less at once",
                             kScans);
     std::memset(places.mapped(), 0xff, scans.size() * sizeof(uint32_t));
     scans.clear();

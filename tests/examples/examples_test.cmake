@@ -103,7 +103,7 @@ set(sconce ${PREFIX}/bin/sconce)
 build(host)
 build(shader)
 
-foreach(scene room furnace)
+foreach(scene room furnace lamp)
     execute_process(COMMAND python3 -B ${here}/${scene}.py OUTPUT_FILE ${WORK}/${scene}.gltf COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
 step("Bake of the room" ${sconce} bake ${WORK}/room.gltf --probes ${here}/probes.json -o ${WORK}/room.sconce --resolution 128 --bounces 3)
@@ -156,6 +156,13 @@ ask(0.3,0.9,0)
 expect("A light in the box" "the light reaches the point")
 ask(0.3,3,0)
 expect("A light behind the ceiling" "the light is hidden from the point")
+
+# A square of 0.06 m that sends 1,000 W/(m^2 sr) lies 1.9 m above the floor's middle: irradiance 1000 * 0.0036 / 1.9^2 = 0.997, less a thousandth. Its
+# light is a lamp's, which is no part of surface light; black metal reflects next to nothing of it.
+step("Bake of the lamp" ${sconce} bake ${WORK}/lamp.gltf --probes ${here}/middle.json -o ${WORK}/lamp.sconce --resolution 128)
+step("Light of a lamp" ${WORK}/shader/ask ${WORK}/lamp.sconce --validation --point 0,-1,0 --normal 0,1,0 --ray 1,1,0 --light 0,0.5,0)
+expect("Irradiance below it" "irradiance (0\\.99|1\\.0[0-2])[0-9]+ ")
+expect("What walls reflect of it" "reflect 0\\.0[0-2][0-9]+ ")
 
 set(host ${WORK}/host/host)
 refused(2 "two files and -o are needed" ${host} ${WORK}/room.gltf)

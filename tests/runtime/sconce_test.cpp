@@ -166,6 +166,14 @@ TEST_F(Door, LightGroupsAreSwitchedInTheFrameThatRecordsIt)
     ASSERT_TRUE(other);
     EXPECT_FALSE(LightGroups::load(*device, *field, file()));
     EXPECT_FALSE(LightGroups::load(*device, *other, grouped)) << "of another field";
+    auto brighter = loadField(grouped); // of as many probes at the same places
+    ASSERT_TRUE(brighter);
+    brighter->irradiance[0] ^= 1u;
+    const std::string again = *folder / "again.sconce";
+    ASSERT_TRUE(saveField(*brighter, again));
+    const auto another = LightGroups::load(*device, *field, again);
+    ASSERT_FALSE(another);
+    EXPECT_NE(another.error().message.find("of another bake"), std::string::npos) << another.error().message;
     auto groups = LightGroups::load(*device, *field, grouped);
     ASSERT_TRUE(groups) << groups.error().message;
     EXPECT_EQ(groups->names(), (std::vector<std::string>{"lamp", "sky"}));
@@ -207,6 +215,37 @@ TEST_F(Door, RefusesAHeaderOfAnotherVersion)
         EXPECT_NE(refused.error().message.find(std::to_string(other.major) + "." + std::to_string(other.minor)), std::string::npos);
     }
     EXPECT_TRUE(Device::create(owner.host(), {mine.major, mine.minor, mine.patch + 1}));
+}
+
+// Before the work of hours, not after it.
+TEST_F(Door, AFileThatCannotBeWrittenIsRefusedBeforeTheBake)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    const auto scene = makeBuiltinScene("cornell-glossy");
+    ASSERT_TRUE(scene);
+    bool begun = false;
+    const Progress progress = [&](std::string_view, double) { return begun = true; };
+    const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}};
+    const Status status = bakeLightField(*device, *scene, probes, {}, *folder / "nowhere/field.sconce", progress);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().code, ErrorCode::fileError);
+    EXPECT_FALSE(begun);
+}
+
+TEST_F(Door, WhatIsOfAnotherDeviceIsRefused)
+{
+    ValidatedDevice owner, stranger;
+    const auto device = Device::create(owner.host()), other = Device::create(stranger.host());
+    ASSERT_TRUE(device && other);
+    const auto field = LightField::load(*device, file());
+    ASSERT_TRUE(field);
+    const auto said = [](const auto& result) { return result ? std::string("nothing") : result.error().message; };
+    IndirectLight::Desc desc;
+    desc.width = desc.height = 8;
+    EXPECT_NE(said(IndirectLight::create(*other, *field, desc)).find("another Vulkan device"), std::string::npos);
+    EXPECT_NE(said(RayTracer::create(*other, *field)).find("another Vulkan device"), std::string::npos);
 }
 
 TEST_F(Door, SaysWhatAFramesEffectsAre)

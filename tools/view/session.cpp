@@ -95,6 +95,7 @@ Status Session::relight(const LightChoice& light, const Lighting& lighting)
         if (!live)
         {
             dropRenderer(); // whatever traces the field looks for live light when it is made
+            lightGroups.reset();
             auto made = makeLiveLight(gpu, *lightField, desc.field);
             if (!made) return made.error();
             live = std::move(*made);

@@ -218,6 +218,28 @@ TEST_F(Streaming, ADamagedBlockIsASentenceAndAPictureWithoutThatProbe)
     EXPECT_GT(meanOf(frame->diffuseIndirect), 0.0);
 }
 
+// The table on the device is the host's: what a stream before had brought is nowhere, until this one has brought it.
+TEST_F(Streaming, AStreamBeginsWithoutTheMapsOfTheOneBefore)
+{
+    auto streamed = open(3);
+    ASSERT_TRUE(streamed) << streamed.error().message;
+    ASSERT_TRUE(settle(*streamed));
+    ASSERT_EQ(streamed->stream.counts().resident, 3u);
+    {
+        const auto gone = std::move(streamed->stream);
+    }
+    auto next = makeFieldStream(gpu(), streamed->field, {.probesAFrame = 1});
+    ASSERT_TRUE(next) << next.error().message;
+    streamed->stream = std::move(*next);
+    for (int frame = 0; frame < 6; ++frame)
+    {
+        ASSERT_TRUE(step(*streamed));
+        std::vector<uint32_t> found(baked.probes.size());
+        ASSERT_TRUE(gpu().download(streamed->field.state().maps->slotOfProbe, 0, std::as_writable_bytes(std::span(found))));
+        EXPECT_EQ(found, streamed->stream.state().slotOfProbe) << "frame " << frame;
+    }
+}
+
 TEST_F(Streaming, WhatCannotStreamIsRefusedWithASentence)
 {
     const auto said = [](const auto& result) { return result ? std::string("nothing") : result.error().message; };

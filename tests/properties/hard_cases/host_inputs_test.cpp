@@ -1,5 +1,7 @@
 // A host's G-buffer with numbers that are none, in some pixels of each image: they stay where they are.
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -32,6 +34,30 @@ protected:
         setenv("SCONCE_NAN_SCAN", "1", 1); // a submit fails with the first bad number that a pass writes
     }
     void TearDown() override { setenv("SCONCE_NAN_SCAN", before.c_str(), 1); }
+
+    /// Of an image of two words a pixel.
+    std::vector<uint32_t> wordsOf(const GpuImage& image)
+    {
+        std::vector<uint32_t> words(size_t(2) * kSide * kSide);
+        auto buffer = gpu().makeBuffer(4 * words.size(), 0, MemoryUse::readback, "read back");
+        EXPECT_TRUE(buffer);
+        const Status status = gpu().submit(
+            [&](VkCommandBuffer cmd)
+            {
+                transition(gpu(), cmd, image,
+                           {VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                            VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+                VkBufferImageCopy copy{};
+                copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                copy.imageExtent = {kSide, kSide, 1};
+                gpu().vk.CmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer->handle(), 1, &copy);
+                memoryBarrier(gpu(), cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                              VK_ACCESS_2_HOST_READ_BIT);
+            });
+        EXPECT_TRUE(status);
+        std::memcpy(words.data(), buffer->mapped(), 4 * words.size());
+        return words;
+    }
 
     std::string before;
 };
@@ -95,6 +121,39 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     EXPECT_EQ(finding, "");
     expectAtMost("NaN, infinite and huge numbers in a host's G-buffer: frames in which a pass writes one that is not finite", planted,
                  finding.empty() ? 0.0 : 1.0, 0.0);
+}
+
+// A view of another size than the passes were made for, or of no rays, is drawn at theirs: it must not lead them beyond their lists.
+TEST_F(HostInputs, AViewOfAnotherSizeIsDrawnAtThatOfThePasses)
+{
+    const auto field = bakeField(*makeBuiltinScene("cornell-glossy"), std::vector<vec3>{{0.0f, 1.5f, 0.5f}});
+    ASSERT_TRUE(field);
+    auto light = makeLightField(gpu(), *field);
+    ASSERT_TRUE(light);
+    const size_t pixels = size_t(kSide) * kSide;
+    const GpuImage depthImage = image(std::vector<glm::vec4>(pixels, glm::vec4(0.05f)), kSide, "host's depth"),
+                   normalImage = image(std::vector<glm::vec4>(pixels, glm::vec4(0, 0, 1, 0.3f)), kSide, "host's normals"),
+                   baseImage = image(std::vector<glm::vec4>(pixels, glm::vec4(0.5f)), kSide, "host's base colour");
+    IndirectLight::Desc desc;
+    desc.width = desc.height = kSide;
+    std::vector<std::vector<uint32_t>> drawn;
+    for (const auto& [size, rays] : {std::pair{glm::uvec2(kSide), 1u}, {glm::uvec2(3 * kSide, kSide / 2), 0u}})
+    {
+        auto indirect = makeIndirectLight(gpu(), *light, desc);
+        ASSERT_TRUE(indirect) << indirect.error().message;
+        indirect->setInputs({depthImage.view(), normalImage.view(), baseImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+        gpu::FrameView view = light->frameView(kSide, kSide);
+        view.worldFromClip = mat4(vec4(0.5f, 0, 0, 0), vec4(0, -0.5f, 0, 0), vec4(0, 1, 0.9f, 1), vec4(0, 0, -1, 0));
+        view.eye = vec3(0.0f, 1.0f, 0.9f);
+        view.size = size;
+        view.glossyRays = rays;
+        view.fieldFromNormals = mat3(rays == 0 ? 0.0f : 1.0f);
+        const auto status = gpu().submit([&](VkCommandBuffer cmd) { indirect->record(cmd, view); });
+        ASSERT_TRUE(status) << status.error().message;
+        drawn.push_back(wordsOf(indirect->state().diffuseImage));
+    }
+    EXPECT_EQ(drawn[0], drawn[1]);
+    EXPECT_NE(*std::ranges::max_element(drawn[0]), 0u);
 }
 
 } // namespace

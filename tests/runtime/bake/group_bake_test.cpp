@@ -319,6 +319,45 @@ TEST_F(GroupBake, LampsAreDimmedWithTheirGroup)
     EXPECT_EQ(found.radiance, half.lamps[0].radiance);
 }
 
+// Two would write over one another; and who comes after one that is gone finds the light as that has left it.
+TEST_F(GroupBake, AFieldIsSwitchedByOneAtATime)
+{
+    Gpu& gpu = device.gpu();
+    auto field = makeLightField(gpu, room());
+    ASSERT_TRUE(field);
+    {
+        auto first = makeLightGroups(gpu, *field, room());
+        ASSERT_TRUE(first) << first.error().message;
+        const auto second = makeLightGroups(gpu, *field, room());
+        ASSERT_FALSE(second);
+        EXPECT_EQ(second.error().code, ErrorCode::badArgument);
+        EXPECT_NE(second.error().message.find("has light groups"), std::string::npos) << second.error().message;
+        ASSERT_TRUE(first->set(std::vector<vec3>(3, vec3(0.0f))));
+        ASSERT_TRUE(gpu.submit([&](VkCommandBuffer cmd) { first->record(cmd); }));
+    }
+    auto next = makeLightGroups(gpu, *field, room());
+    ASSERT_TRUE(next) << next.error().message;
+    ASSERT_TRUE(gpu.submit([&](VkCommandBuffer cmd) { next->record(cmd); })) << "as it was baked, without a call of set()";
+    std::vector<uint32_t> found(room().surfaceLight.size());
+    ASSERT_TRUE(gpu.download(field->state().surface, 0, std::as_writable_bytes(std::span(found))));
+    EXPECT_EQ(found, room().surfaceLight);
+}
+
+TEST_F(GroupBake, AKeptDimmedFieldComesBackToWhatWasBaked)
+{
+    Gpu& gpu = device.gpu();
+    const FieldData dark = mixed(room(), std::vector<vec3>(3, vec3(0.0f))); // as `relight --keep --dim` leaves it
+    auto field = makeLightField(gpu, dark);
+    ASSERT_TRUE(field);
+    auto groups = makeLightGroups(gpu, *field, dark);
+    ASSERT_TRUE(groups);
+    ASSERT_TRUE(groups->set(std::vector<vec3>(3, vec3(1.0f))));
+    ASSERT_TRUE(gpu.submit([&](VkCommandBuffer cmd) { groups->record(cmd); }));
+    std::vector<uint32_t> found(room().surfaceLight.size());
+    ASSERT_TRUE(gpu.download(field->state().surface, 0, std::as_writable_bytes(std::span(found))));
+    EXPECT_EQ(found, room().surfaceLight);
+}
+
 TEST_F(GroupBake, WhatHasNoSurfaceLightIsRefused)
 {
     BakeSettings bare = settings();

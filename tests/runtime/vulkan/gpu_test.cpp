@@ -50,5 +50,41 @@ TEST(GpuTimer, NamesItsScopes)
     EXPECT_GT(timer->read()[0].milliseconds, 0.0);
 }
 
+// What is more than it was made for, or comes without a reset, is left out, and nothing is written beyond what it holds.
+TEST(GpuTimer, LeavesOutWhatItHasNoRoomFor)
+{
+    ValidatedDevice device;
+    Gpu& gpu = device.gpu();
+    const auto none = GpuTimer::create(gpu, 0);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, ErrorCode::badArgument);
+    auto timer = GpuTimer::create(gpu, 2);
+    ASSERT_TRUE(timer);
+    ASSERT_TRUE(gpu.submit(
+        [&](VkCommandBuffer cmd)
+        {
+            timer->reset(cmd);
+            for (const char* name : {"one", "two", "three", "four"})
+            {
+                timer->begin(cmd, name);
+                timer->end(cmd);
+            }
+        }));
+    if (!gpu.timestamps) GTEST_SKIP() << "the queue has no timestamps";
+    ASSERT_EQ(timer->read().size(), 2u);
+    EXPECT_STREQ(timer->read()[1].name, "two");
+}
+
+TEST(Gpu, RefusesAFamilyThatItCannotUse)
+{
+    ValidatedDevice device;
+    HostVulkan host = device.host();
+    host.queueFamily = 99;
+    const auto made = Gpu::create(host);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::badArgument);
+    EXPECT_NE(made.error().message.find("queueFamily is 99"), std::string::npos);
+}
+
 } // namespace
 } // namespace sconce
