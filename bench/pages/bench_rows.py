@@ -5,6 +5,7 @@
     python3 bench/pages/bench_rows.py knobs RESULTS.json        bench/results/knobs.json: one scene's knobs
     bench/pages/leaks_sheet.sh                                  bench/results/walls.json
     bench/pages/ray_table.sh                                    bench/results/sponza_rays.json and tracer_targets.json
+    bench/pages/resolution_table.sh                             bench/results/probes_and_resolution.json
     bench/pages/order_table.sh                                  bench/results/probe_orders.json
     bench/pages/compact_table.sh                                bench/results/compact.json
     bench/pages/response_table.sh                               bench/results/light_response.json
@@ -20,7 +21,10 @@
     bench/pages/moving_table.sh                                 bench/results/moving_shapes.json
     python3 bench/pages/bench_rows.py gpu GPU.json               bench/results/gpu_frames.json and gpu_rays.json, of what bench/gpu/run.sh wrote; notes may follow
     python3 bench/pages/bench_rows.py surfaces ROWS.txt          bench/results/surface_light.json, of what surface_table.sh printed
-    bench/pages/placement_table.sh                              a row of bench/results/placement_steps.json, printed
+    bench/pages/placement_table.sh                              bench/results/placement_steps.json
+    bench/pages/coverage_table.sh                               bench/results/placement_coverage.json
+    bench/pages/placement_pictures.sh                           bench/results/placement_pictures.json
+    bench/pages/scene_table.sh                                  bench/results/scene_pipeline.json
 
 The commit that is named is the checked-out one: run it where the bench's program was built. A scene that several runs hold is the last one's.
 """
@@ -296,6 +300,21 @@ def rays(arguments):
     tracer_targets(rows)
 
 
+def resolution(arguments):
+    """@param arguments  a race's results, of fields PROBES_TEXELS.sconce, first the one that times are relative to"""
+    fields = [entry for entry in json.loads(Path(arguments[0]).read_text()) if "field" in entry]
+    rows = {}
+    for entry in sorted(fields, key=lambda entry: (entry["field"] != fields[0]["field"] and not entry["field"].endswith("_256.sconce"), entry["probes"], entry["field"])):
+        probes, texels = Path(entry["field"]).stem.split("_")
+        row = traced(entry, fields[0])
+        rows[f"{probes}_{texels}"] = {"probes": probes, "resolution": texels} | {
+            key: row[key] for key in ("right_1", "right_02", "right_1_unsure", "false", "leak", "unresolved", "reads_mean", "reads_95", "index_reads", "mib_traced")} | {
+            "mib_all": f"{entry['trace_mib'] * entry['probes']:.0f}", "time_order": row["ratio_order"], "time_shuffled": row["ratio_shuffled"]}
+    write("probes_and_resolution.json", "What accuracy costs: probes and resolution; Sponza, placed probes, cube faces", ["bench/pages/resolution_table.sh"],
+          ["100,000 glossy rays (GGX alpha 0.1 to 0.3), truth by Embree; right within 1 % and 0.2 % of the diagonal, shares in %",
+           "time: trace of 50,000 rays over that of 54 probes at 256 in the same run, in picture order and shuffled; mib_traced: of a probe; mib_all: of all"], rows)
+
+
 ORDERS = {"0": "as ranked", "1": "most parallel (Donow 2016)", "2": "most parallel, signed (Donow 2016)", "3": "nearest to the line"}
 
 
@@ -362,7 +381,8 @@ def steps(arguments):
     at, name, count, steps, views = arguments[0], arguments[1], arguments[2], arguments[3].split(","), int(arguments[4])
     race = {Path(entry["field"]).name.split(".")[-2]: entry for entry in json.loads(Path(at + ".race.json").read_text()) if "field" in entry}
     placed = {line.split()[0]: line.split() for line in Path(at + ".placed.txt").read_text().splitlines() if line.split()[:1] and line.split()[0] in steps}
-    row = {"label": f"{name}, {count}"}
+    grid = placed["grid"][1] if "grid" in placed else count
+    row = {"label": f"{name}, {count}" + (f" (grid {grid})" if grid != count else "")}
     for step in steps:
         key, ray = slug(step), race[step]
         row |= {f"{key}_wrong": f"{100 * (1 - ray['right_1']):.2f}", f"{key}_wrong_02": f"{100 * (1 - ray['right_02']):.2f}", f"{key}_unsure": f"{100 * ray['right_1_unsure']:.2f}",
@@ -372,6 +392,31 @@ def steps(arguments):
         mean = lambda key: sum(view[key] for view in light) / views
         row |= {f"{key}_relmse": f"{mean('relmse'):.5f}", f"{key}_flip": f"{mean('flip'):.3f}", f"{key}_means": " ".join(f"{view['mean']:.3f}" for view in light)}
     print(f'  "{slug(name)}": {json.dumps(row)},', flush=True)
+
+
+def placed(arguments):
+    """Of the lines that placement_table.sh prints, what the default has of the yardstick's and the grid's, and over all scenes geometric means of each step."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    steps = [key.removesuffix("_wrong") for key in next(iter(rows.values())) if key.endswith("_wrong")]
+    all_, behind = {"label": "all, geometric means over the yardstick's"}, []
+    times = lambda row, step, of, key: float(row[f"{step}_{key}"]) / float(row[f"{of}_{key}"])
+    for key in ("wrong", "relmse"):
+        of = [row for row in rows.values() if f"yardstick_{key}" in row]
+        all_ |= {f"{step}_{key}": f"{statistics.geometric_mean([times(row, step, 'yardstick', key) for row in of]):.2f}" for step in steps if step != "yardstick"}
+        all_ |= {{"wrong": "scenes", "relmse": "lit"}[key]: str(len(of))}
+    for row in rows.values():
+        best = min((step for step in steps if step != "grid"), key=lambda step: float(row[f"{step}_wrong"]))
+        unsure = max(float(row["gradient_unsure"]), float(row[f"{best}_unsure"]))
+        behind.append((float(row["gradient_wrong"]) - float(row[f"{best}_wrong"])) / unsure)
+        for of in ("yardstick", "grid"):
+            row |= {f"of_{of}": " / ".join(f"{times(row, 'gradient', of, key):.2f}" for key in ("wrong", "wrong_02"))}
+    rows["all"] = all_ | {"behind_best": f"{max(behind):.1f}"}
+    write("placement_steps.json", "What each step of placing buys: glossy rays wrong within 1 % and 0.2 % of the diagonal, in %, and diffuse relMSE, FLIP and means over a scene's views",
+          ["bench/pages/placement_table.sh"],
+          ["yardstick: plain greedy cover; grid: the best of place --fit-grid; chosen: greedy and exchange; gradient: that refined, as sconce place does; balls, balls_gradient: chosen and refined from the other skeleton",
+           "100,000 rays, all by our tracer, maps of 256; unsure: standard error of wrong rays by viewpoint; light of up to 8 bounces, as the references",
+           "relMSE is without the reference's noise (256 paths in parts); Sponza's third view is of its roof, which is no part of the space that counts",
+           "behind_best: by how many standard errors (the larger of the two) the default has more wrong rays than the best step, in the scene where it is most"], rows)
 
 
 def response(arguments):
@@ -645,14 +690,50 @@ def each_effect(arguments):
           ["passes in ms of one frame; sun is judged with the whole of direct light"], rows)
 
 
+def covered(arguments):
+    path, name, count, asked = arguments
+    lines = {line.split()[0]: line.split() for line in Path(path).read_text().splitlines()[2:]}
+    row = {"label": name, "probes": count, "bound": lines["bound"][2]}
+    for key, method in (("yardstick", "yardstick"), ("grid", "grid"), ("ours", "gradient")):
+        probes, rays, area, _, _, quality, seconds, cpu = lines[method][1:9]
+        row |= {f"{key}_rays": rays, f"{key}_area": area, f"{key}_quality": quality, f"{key}_seconds": seconds, f"{key}_cpu": cpu} | ({f"{key}_probes": probes} if probes != count else {})
+    print(f'  "{slug(name)}_{count}": {json.dumps(row | {"asked": asked})},', flush=True)
+
+
+def coverage(arguments):
+    """Of the lines that coverage_table.sh prints."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("placement_coverage.json", "Coverage of placements, % of ray hits and of area, quality of views, and seconds of placing, on samples no placement used", ["bench/pages/coverage_table.sh"],
+          ["60,000 points: the standard error at 99.7 % is 0.02 %", "bound: share of the same points that some position which keeps the clearance sees (300 directions x 12 depths before each point)",
+           "yardstick: plain greedy cover over 1,500 random free points in the same free space; grid: the best of place --fit-grid; _probes: where it has another number",
+           "quality: mean of cosine x spacing / (spacing + distance) of the best view; cpu: user and system"], rows)
+
+
+def reflections(arguments):
+    """Of the lines that placement_pictures.sh prints, and by how many per cent FLIP is less in views that see what some probe of the grid sees, but for Sponza's."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    less = [f"{100 * (1 - float(row['ours_flip']) / float(row['grid_flip'])):.0f}" for key, row in rows.items() if not key.startswith("sponza") and row["camera"] not in ("cella", "door")]
+    rows["all"] = {"label": "least and most", "others_less": least_and_most(less)}
+    write("placement_pictures.json", "Reflections at equal count: every surface at roughness 0.15, 64 rays a pixel, no filter, --bounces 0", ["bench/pages/placement_pictures.sh"],
+          ["grid: not fitted; others_less: per cent less FLIP of ours in temple's main and colonnade and in modern_hall; errors hold the reference's noise of 256 paths"], rows)
+
+
+def pipeline(arguments):
+    """Of the lines that scene_table.sh prints."""
+    rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
+    write("scene_pipeline.json", "Every scene through the whole pipeline: 32 probes, cube faces of 256 texels, frames of 480x270, one glossy ray a pixel", ["bench/pages/scene_table.sh"],
+          ["MB is the peak resident memory of the step before it", "covered, %: share of the surface points hit by random rays from the reachable space that some probe sees",
+           "triangles are those left after degenerate and fully transparent ones are dropped"], rows)
+
+
 def least_and_most(texts):
     numbers = sorted((float(text), text) for text in texts if text != "nan")
     return f"{numbers[0][1]} to {numbers[-1][1]}" if numbers else ""
 
 
 if __name__ == "__main__":
-    modes = {"methods": methods, "knobs": knobs, "rays": rays, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "response": response, "bounces": bounces, "effects": effects,
-             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "gallery": gallery, "each_effect": each_effect, "fly": fly, "flights": flights}
+    modes = {"methods": methods, "knobs": knobs, "rays": rays, "resolution": resolution, "orders": orders, "compact": compact, "walls": walls, "steps": steps, "placed": placed, "response": response, "bounces": bounces, "effects": effects,
+             "gpu": gpu, "primary": primary, "primaries": primaries, "moving": moving, "movings": movings, "field_paths": field_paths, "sparse": sparse, "sparses": sparses, "surfaces": surfaces, "day": day, "gallery": gallery, "each_effect": each_effect, "covered": covered, "coverage": coverage, "reflections": reflections, "pipeline": pipeline, "fly": fly, "flights": flights}
     if len(sys.argv) < 3 or sys.argv[1] not in modes:
         sys.exit(__doc__)
     modes[sys.argv[1]](sys.argv[2:])
