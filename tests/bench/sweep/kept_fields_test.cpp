@@ -72,6 +72,18 @@ TEST_F(KeptFieldsTest, OpponentsMapsAreLitAsOursAre)
     EXPECT_GT(std::abs(meanIrradiance(fieldOf(alone)) - ours), 0.03 * ours) << "there is something to tell";
 }
 
+// What is lent is scattered once more where it lights maps than what lends it: a bounce ahead, opponents' pictures would be too bright.
+TEST_F(KeptFieldsTest, OpponentsMapsHaveAsManyBouncesAsOurs)
+{
+    for (const uint32_t bounces : {1u, 2u})
+    {
+        PointSettings ours = asked("ours"), theirs = asked("b0plus-octree");
+        ours.bounces = theirs.bounces = bounces;
+        const double mean = meanIrradiance(fieldOf(ours));
+        EXPECT_NEAR(meanIrradiance(fieldOf(theirs)), mean, 0.01 * mean) << bounces << " bounces";
+    }
+}
+
 TEST_F(KeptFieldsTest, AFieldIsBakedOnce)
 {
     const FieldData first = fieldOf(asked("ours"));
