@@ -495,7 +495,7 @@ void fill(FreeSpace& space, const Regions& regions, const Seeds& seeds, const Vi
     keepEnclosed(space, seeds.indoors ? kIndoorEnclosedShare : kEnclosedShare, visibility);
     if (!open.box) space.ground = open.ground.value_or(callsForGround(space, reached, seeds, visibility) ? kStanding : 0.0f);
     if (open.box || space.ground > 0.0f) addOpen(space, reached, open, visibility);
-    if (seeds.indoors) reached = space.reachable; // only through kept cells: alcoves of the roof are as enclosed as a room
+    if (seeds.indoors && !open.box) reached = space.reachable; // only through kept cells: alcoves of the roof are as enclosed as a room
     if (const float radius = passageRadius(space, seeds.cells); radius > 0.0f)
     {
         keepPassable(space.field, reached, seeds.cells, radius);

@@ -67,6 +67,7 @@ std::vector<glm::ivec3> powerOfTwoShapes(const Bounds& bounds, uint32_t count, s
         for (int y = 0; y <= kMostLog; ++y)
             for (int z = 0; z <= kMostLog; ++z)
             {
+                if (1u << (x + y + z) > kMostProbes) continue; // more than an index has room for
                 const double miss = std::abs(double(x + y + z) - std::log2(double(count)));
                 if (miss > nearest) continue;
                 if (miss < nearest) all.clear();

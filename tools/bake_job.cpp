@@ -195,9 +195,14 @@ std::optional<std::vector<std::byte>> BakeJob::find(const BakePart& part) const
     return std::nullopt;
 }
 
+size_t BakeJob::finished() const
+{
+    return own.records() - (own.holds(kCommand) ? 1 : 0);
+}
+
 Error BakeJob::withRemedy(Error error) const
 {
-    if (own.records() > 0) error.message += "; what is finished is kept, and the same command goes on from there";
+    if (finished() > 0) error.message += "; what is finished is kept, and the same command goes on from there";
     return error;
 }
 

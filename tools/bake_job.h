@@ -59,9 +59,8 @@ public:
     Status remove() { return own.remove(); }
 
 private:
-    BakeJob(JournalFile journal, std::vector<JournalFile> parts) : own(std::move(journal)), others(std::move(parts)), before(own.records())
-    {
-    }
+    size_t finished() const; // parts of the bake in the own journal
+    BakeJob(JournalFile journal, std::vector<JournalFile> parts) : own(std::move(journal)), others(std::move(parts)), before(finished()) {}
     JournalFile own;
     std::vector<JournalFile> others;
     size_t before;

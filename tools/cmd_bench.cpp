@@ -163,10 +163,18 @@ public:
 /// What the points of a guard are measured with, and back.
 Json guardOptions(const BenchSettings& settings, const PlanSettings& plan)
 {
-    return {{"size", {settings.width, settings.height}}, {"rays", settings.rays},        {"spp", settings.referencePaths},
-            {"until", settings.referenceUntil},          {"frames", settings.frames},    {"probes", plan.probes},
-            {"resolution", plan.ours.resolution},        {"bounces", plan.ours.bounces}, {"knobs", plan.knobs},
-            {"surface_rays", plan.ours.surfaceRays}};
+    return {{"size", {settings.width, settings.height}},
+            {"rays", settings.rays},
+            {"spp", settings.referencePaths},
+            {"until", settings.referenceUntil},
+            {"frames", settings.frames},
+            {"probes", plan.probes},
+            {"resolution", plan.ours.resolution},
+            {"bounces", plan.ours.bounces},
+            {"knobs", plan.knobs},
+            {"surface_rays", plan.ours.surfaceRays},
+            {"seed", settings.seed},
+            {"roughness", plan.roughness ? Json(*plan.roughness) : Json()}};
 }
 
 /// Throws what Json does where one isn't there or of another kind.
@@ -183,6 +191,8 @@ void setGuardOptions(const Json& options, BenchSettings& settings, PlanSettings&
     plan.ours.bounces = options.at("bounces");
     plan.ours.surfaceRays = options.value("surface_rays", knobs::surfaceRays.value); // older guards have none
     plan.knobs = options.at("knobs").get<std::vector<std::string>>();
+    settings.seed = options.value("seed", settings.seed); // older guards have neither
+    if (const Json roughness = options.value("roughness", Json()); !roughness.is_null()) plan.roughness = roughness.get<float>();
 }
 
 /// The points of a guarded scene, measured anew: ours and B0+, without pictures.
@@ -241,9 +251,9 @@ int checkGuard(const BenchRun& run)
             json["points"].push_back({{"scene", scene["name"]},
                                       {"id", point["id"]},
                                       {"trace_ms", numberOrNull(figureOf(point, "trace_ms").value_or(NAN))},
-                                      {"reads", *figureOf(point, "reads")},
-                                      {"wrong_rays", *figureOf(point, "wrong_rays")},
-                                      {"wrong_rays_02", *figureOf(point, "wrong_rays_02")}});
+                                      {"reads", numberOrNull(figureOf(point, "reads").value_or(NAN))},
+                                      {"wrong_rays", numberOrNull(figureOf(point, "wrong_rays").value_or(NAN))},
+                                      {"wrong_rays_02", numberOrNull(figureOf(point, "wrong_rays_02").value_or(NAN))}});
     }
     addCost(json, watch);
     if (run.context.json)

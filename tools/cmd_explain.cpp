@@ -20,6 +20,7 @@
 #include "scene/view_rays.h"
 #include "shaders/shared/frame.h"
 #include "tools/field_report.h"
+#include "tools/frame_setup.h"
 #include "tools/live_light_options.h"
 #include "tools/pictures.h"
 #include "tools/ray_picture.h"
@@ -86,7 +87,9 @@ Result<glm::uvec2> pixelOf(const ExplainOptions& options)
 Status draw(const ExplainOptions& options, Scene scene, const FieldData& data, const Camera& camera, Explained& e)
 {
     RenderSettings settings;
-    const Result<EffectPlan> plan = planEffects(checkScene(scene, settings.raysBelow));
+    FrameChoice choice;
+    choice.roughness = options.roughness;
+    const Result<EffectPlan> plan = planFor(choice, scene);
     if (!plan) return plan.error();
     capScene(scene, *plan);
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});

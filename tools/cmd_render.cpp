@@ -201,11 +201,12 @@ Status takeQuality(RenderOptions& options, Quality& tracer)
         options.quality.take("--samples", options.samples, frame.glossyRays);
         options.quality.take("--no-denoise", options.noDenoise, !frame.effects.denoise);
         options.quality.take("--temporal", options.temporal, frame.effects.temporal);
-        options.quality.take("--diffuse", options.diffuse,
-                             std::string(frame.effects.tracedDiffuse  ? kTraced
-                                         : frame.effects.patches      ? kPatches
-                                         : frame.effects.surfaceLight ? kSurface
-                                                                      : kIrradiance));
+        // Surface light is the default where the field holds it; where it holds none, the file that says so is drawn without.
+        if (frame.effects.tracedDiffuse || frame.effects.patches || !frame.effects.surfaceLight)
+            options.quality.take("--diffuse", options.diffuse,
+                                 std::string(frame.effects.tracedDiffuse ? kTraced
+                                             : frame.effects.patches     ? kPatches
+                                                                         : kIrradiance));
         options.quality.take("--area-shadows", options.areaShadows, std::string(frame.effects.fieldShadows ? kField : kMaps));
         options.quality.take("--rays-below", options.raysBelow, frame.raysBelow);
         options.quality.take("--trace-every", options.traceEvery, frame.traceEvery);
@@ -390,7 +391,7 @@ Result<Asked> prepare(const RenderOptions& options, const Context& context)
         return Error{ErrorCode::badArgument,
                      fmt::format("--area-shadows field is traced by our tracer; leave it out, or --tracer {}.", options.tracer)};
     // The plan first, by what the whole scene calls for; what it gives up then goes, or it would leave shadow maps and passes behind.
-    Result<EffectPlan> plan = planFor(options, *scene);
+    Result<EffectPlan> plan = planFor(options, *scene, !options.sunPath.empty());
     if (!plan) return plan.error();
     noteGivenUp(context, *plan);
     Result<OpenedField> opened = openFor(options);
@@ -606,8 +607,9 @@ void addRenderCommand(CLI::App& app, Context& context)
     options->pictures.add(command, frameLayers());
     options->quality.add(command);
     // What only geometry's pixels have.
-    for (const char* other : {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every",
-                              "--surface-probes", "--no-denoise", "--temporal", "--roughness", "--sun-path", "--shapes", "--resident"})
+    for (const char* other :
+         {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--surface-probes", "--no-denoise",
+          "--temporal", "--roughness", "--sun-path", "--shapes", "--resident", "--seed", "--warm-up"})
         fromField->excludes(command->get_option(other));
     onChosen(command, context, options, runRender);
 }

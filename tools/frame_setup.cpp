@@ -7,6 +7,7 @@
 #include "runtime/field/light_groups.h"
 #include "scene/scene_check.h"
 #include "tools/light_group_options.h"
+#include "tools/live_light_options.h"
 
 namespace sconce::tools
 {
@@ -34,8 +35,14 @@ void addFrameOptions(CLI::App* command, FrameChoice& choice)
     addKnob(command, "--seed", choice.seed, knobs::frameSeed);
 }
 
-Result<EffectPlan> planFor(const FrameChoice& choice, const Scene& scene)
+Result<EffectPlan> planFor(const FrameChoice& choice, const Scene& scene, bool sunComes)
 {
+    if (sunComes)
+    {
+        Scene lit = scene;
+        turnSun(lit.lights, SunPlace{vec3(0.0f, -1.0f, 0.0f), {}});
+        return planFor(choice, lit);
+    }
     if (!choice.roughness) return planEffects(checkScene(scene, choice.raysBelow), choice.effects);
     Scene drawn = scene;
     for (Material& material : drawn.materials)

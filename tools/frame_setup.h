@@ -40,7 +40,8 @@ struct FrameChoice
 void addFrameOptions(CLI::App* command, FrameChoice& choice);
 
 /// The plan for the scene as it is drawn: with `roughness` every surface has that. Errors: badArgument (names what is no effect).
-Result<EffectPlan> planFor(const FrameChoice& choice, const Scene& scene);
+/// @param sunComes  a sun will shine in it, whether it has one or not
+Result<EffectPlan> planFor(const FrameChoice& choice, const Scene& scene, bool sunComes = false);
 
 /// The choice's, but for size and tracer. @param diffuse  out: that was chosen
 /// @param field  its file's name, for the sentence

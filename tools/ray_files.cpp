@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -29,7 +30,13 @@ bool parseNumber(const char*& at, const char* end, float& value)
     double number = 0.0;
     const auto [next, error] = std::from_chars(at, end, number);
     if (error == std::errc::result_out_of_range)
-        number = next[-1] == '0' ? 0.0 : std::numeric_limits<double>::infinity();
+    {
+        // Too small by a negative exponent, or by zeros after the point; else too large.
+        const std::string_view text(at, size_t(next - at));
+        const size_t exponent = text.find_first_of("eE");
+        const bool small = exponent != text.npos ? text[exponent + 1] == '-' : text.find('.') < text.find_first_of("123456789");
+        number = std::copysign(small ? 0.0 : std::numeric_limits<double>::infinity(), text.front() == '-' ? -1.0 : 1.0);
+    }
     else if (error != std::errc{})
         return false;
     value = float(number);

@@ -75,6 +75,7 @@ private:
             const uvec3 corner = scene.triangles[t];
             const glm::dvec3 a(scene.positions[corner.x]), b(scene.positions[corner.y]), c(scene.positions[corner.z]);
             const double own = 0.5 * glm::length(glm::cross(b - a, c - a)) / (double(space.scale) * space.scale);
+            if (!(own > 0.0)) continue;
             emitters.push_back({t, emission, own, own * luminance(emission)});
             shining.push_back(t);
             power += emitters.back().power;

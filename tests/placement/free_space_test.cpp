@@ -143,6 +143,20 @@ TEST(FreeSpace, ThinWallSeparatesAndAPointInsideChooses)
     expectBox(spaceOf(scene, {{1, 1, 2}, {5, 1, 2}}), {0, 0, 0}, {6, 3, 4});
 }
 
+// A box is all free space in it, wherever the camera is.
+TEST(FreeSpace, ABoxBesideTheCamerasRoomIsFilled)
+{
+    Scene scene = closedRoom({8, 3, 4});
+    addQuad(scene, {4, 0, 0}, {0, 3, 0}, {0, 0, 3}); // a wall with an opening at its end
+    addQuad(scene, {4, 0, 0}, {0, 0, 3}, {0, 3, 0});
+    const auto visibility = Visibility::build(scene);
+    ASSERT_TRUE(visibility);
+    const std::vector<vec3> inside = {{1, 1, 1}};
+    const auto space = findFreeSpace(scene, *visibility, inside, 200000, {}, {.box = Bounds{{5, 0, 0}, {8, 3, 4}}});
+    ASSERT_TRUE(space) << space.error().message;
+    expectBox(*space, {5, 0, 0}, {8, 3, 4});
+}
+
 TEST(FreeSpace, SlantedThinWallSeparates)
 {
     Scene scene = closedRoom({4, 4, 4});

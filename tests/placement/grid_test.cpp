@@ -42,6 +42,8 @@ TEST(GridShape, OfPowersOfTwoIsNearestInCountThenInShape)
     EXPECT_EQ(shape({1, 1, 1}, 8), glm::ivec3(2, 2, 2));
     EXPECT_EQ(shape({8, 1, 1}, 54), glm::ivec3(16, 2, 2)); // 64 is nearer in ratio than 32
     EXPECT_EQ(shape({5, 5, 5}, 1), glm::ivec3(1, 1, 1));
+    const glm::ivec3 most = shape({5, 5, 5}, 65535);
+    EXPECT_EQ(most.x * most.y * most.z, 32768) << "65,536 probes have no index";
 }
 
 TEST(GridIn, MarginsAreSharesOfAStep)

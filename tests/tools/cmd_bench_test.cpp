@@ -190,6 +190,25 @@ TEST(QualityOption, SetsWhatTheCommandLineDoesNotSay)
     EXPECT_EQ(sconceCommand({"place", "cornell", "-o", probes, "--quality", "splendid"}).exit, 2);
 }
 
+// A quality that bakes no surface light is drawn without it, by the same file.
+TEST(QualityOption, AFieldWithoutSurfaceLightIsDrawnByItsOwnFile)
+{
+    const TestFolder folder;
+    const std::string quality = folder / "bare.json", field = folder / "f.sconce";
+    writeText(folder / "p.json", R"({"probes": [{"position": [0, 1, 0]}]})");
+    writeText(quality, json{{"quality", 1}, {"settings", {{"surface texels", 0}, {"resolution", 128}}}}.dump());
+    const CommandResult bake =
+        sconceCommand({"bake", "cornell", "--probes", folder / "p.json", "-o", field, "--quality", quality, "--bounces", "0", "-q"});
+    ASSERT_EQ(bake.exit, 0) << bake.err;
+    for (const std::string& by : {quality, std::string("draft")})
+    {
+        const CommandResult render =
+            sconceCommand({"render", "cornell", "--field", field, "--size", "32x18", "-o", folder / "x.exr", "--quality", by, "--json"});
+        ASSERT_EQ(render.exit, 0) << render.err;
+        EXPECT_EQ(json::parse(render.out)["diffuse"], "irradiance");
+    }
+}
+
 /// All that `tune` may pick of ours, in each command that it is for.
 TEST(QualityOption, SetsPlacementAndBakeAsTheirOptionsDo)
 {

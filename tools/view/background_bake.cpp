@@ -1,5 +1,7 @@
 #include "tools/view/background_bake.h"
 
+#include <new>
+
 #include "placement/place.h"
 #include "runtime/bake/bake.h"
 #include "runtime/frame/effect_plan.h"
@@ -15,7 +17,15 @@ BackgroundBake::BackgroundBake(const Scene& scene, std::string device)
     thread = std::thread(
         [this, &scene, device = std::move(device)]
         {
-            Result<FieldData> field = work(scene, device);
+            Result<FieldData> field = Error{ErrorCode::outOfMemory, "There is not enough main memory to place and bake; lower --count or "
+                                                                    "--resolution."};
+            try
+            {
+                field = work(scene, device);
+            }
+            catch (const std::bad_alloc&) // said as above
+            {
+            }
             std::scoped_lock lock(mutex);
             made = std::move(field);
             now.finished = true;

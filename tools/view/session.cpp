@@ -147,7 +147,7 @@ Status Session::apply(const ViewKnobs& knobs, const LightChoice& light, uint32_t
     if (light.sun && !sunMoves())
         return Error{ErrorCode::badArgument,
                      fmt::format("The lights of light field '{}' can't move; bake it with --live-links.", desc.fieldName)};
-    auto plan = planFor(knobs.frame, desc.scene);
+    auto plan = planFor(knobs.frame, desc.scene, light.sun.has_value());
     if (!plan) return plan.error();
     std::string diffuse;
     auto settings = settingsFor(knobs.frame, *plan, desc.field, desc.fieldName, diffuse);

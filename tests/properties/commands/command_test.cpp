@@ -386,9 +386,9 @@ TEST(Command, PipelineFromSceneToHits)
     // From a probe straight down: the floor. And rays that are none.
     const json& position = probes.at("probes")[0].at("position");
     std::ostringstream rays;
-    rays << "ox,oy,oz,dx,dy,dz\n" << position[0] << "," << position[1] << "," << position[2] << ",0,-3,0\n";
-    const size_t odd = 6;
-    rays << "0,1,0,nan,0,0\n0,1,0,0,0,0\n0,1,0,inf,0,0\nnan,0,0,0,1,0\n1e39,1e-60,0,1,0,0\n0,1,0,1e38,-1e38,1e-38\n";
+    rays << "ox,oy,oz,dx,dy,dz\n" << position[0] << "," << position[1] << "," << position[2] << ",1e-401,-3,0\n"; // no double is so small
+    const size_t odd = 7;
+    rays << "0,1,0,nan,0,0\n0,1,0,0,0,0\n0,1,0,inf,0,0\nnan,0,0,0,1,0\n1e39,1e-60,0,1,0,0\n1e400,0,0,1,0,0\n0,1,0,1e38,-1e38,1e-38\n";
     writeText(folder / "rays.csv", rays.str());
     const CommandResult trace =
         sconceCommand({"trace", folder / "f.sconce", "--rays", folder / "rays.csv", "-o", folder / "hits.csv", "--json", "--cpu"});
@@ -749,11 +749,8 @@ TEST(Command, LightsMoveAfterTheBake)
     EXPECT_TRUE(moved["live_light_ms"].contains("live direct"));
     EXPECT_FALSE(jsonOf(drawn("other.sconce", other, "file.exr")).contains("live_light_ms"));
     EXPECT_FALSE(jsonOf(drawn("f.sconce", one, "before.exr")).contains("live_light_ms")) << "nothing moved";
-    const auto compared = [&](const char* picture, const char* reference)
-    {
-        return jsonOf(sconceCommand({"compare", folder / picture, folder / reference, "--layer", "diffuse_indirect", "--json"}))
-            .at("mse")
-            .get<double>();
+    const auto compared = [&](const char* picture, const char* reference, const char* layer = "diffuse_indirect") {
+        return jsonOf(sconceCommand({"compare", folder / picture, folder / reference, "--layer", layer, "--json"})).at("mse").get<double>();
     };
     EXPECT_EQ(compared("moved.exr", "file.exr"), 0.0);
     EXPECT_GT(compared("moved.exr", "before.exr"), 1e-6);
@@ -765,6 +762,7 @@ TEST(Command, LightsMoveAfterTheBake)
     ASSERT_EQ(day["pictures"].size(), 3u);
     for (const char* name : {"day-0000.exr", "day-0001.exr", "day-0002.exr"}) EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
     EXPECT_GT(compared("day-0001.exr", "day-0002.exr"), 1e-6) << "noon and night";
+    EXPECT_GT(compared("day-0001.exr", "day-0002.exr", "direct"), 1e-6) << "a sun that the scene didn't have shines directly, too";
 
     const auto refused = [&](std::vector<std::string> more, int exit, const char* part)
     {

@@ -90,6 +90,22 @@ TEST(LightList, EachOfManyEqualLampsCarriesItsOwnPower)
     }
 }
 
+TEST(LightList, ALampWithoutAreaHasNoSample)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t lamp = mesh.emitter("lamp", vec3(2.0f));
+    mesh.quad({0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, lamp);
+    mesh.quad({5, 0, 0}, {6, 0, 0}, {6, 0, 0}, {5, 0, 0}, lamp);
+    const gpu::LightFieldInfo space = fieldSpace(scene.bounds());
+    const LightList list = buildLightList(scene, space, {.emitterSamples = 1024, .skySamples = 0, .areaShadows = false});
+    EXPECT_EQ(list.header.emitterCount, 1024u);
+    EXPECT_EQ(list.emitters.size(), 2u);
+    double area = 0.0;
+    for (const gpu::GpuLight& light : list.lights) area += double(light.area) * space.scale * space.scale;
+    EXPECT_NEAR(area, 1.0, 1e-3);
+}
+
 TEST(LightList, EmitterPatchesLieInsideTheLampAndAverageToItsCentre)
 {
     const Scene scene = cornell();
