@@ -308,11 +308,11 @@ def resolution(arguments):
         probes, texels = Path(entry["field"]).stem.split("_")
         row = traced(entry, fields[0])
         rows[f"{probes}_{texels}"] = {"probes": probes, "resolution": texels} | {
-            key: row[key] for key in ("right_1", "right_02", "right_1_unsure", "false", "leak", "unresolved", "reads_mean", "reads_95", "index_reads", "mib_traced")} | {
-            "mib_all": f"{entry['trace_mib'] * entry['probes']:.0f}", "time_order": row["ratio_order"], "time_shuffled": row["ratio_shuffled"]}
+            key: row[key] for key in ("right_1", "right_02", "right_1_unsure", "false", "leak", "unresolved", "reads_mean", "reads_95", "index_reads")} | {
+            "mib_traced": f"{entry['trace_mib'] * entry['probes']:.0f}", "time_order": row["ratio_order"], "time_shuffled": row["ratio_shuffled"]}
     write("probes_and_resolution.json", "What accuracy costs: probes and resolution; Sponza, placed probes, cube faces", ["bench/pages/resolution_table.sh"],
           ["100,000 glossy rays (GGX alpha 0.1 to 0.3), truth by Embree; right within 1 % and 0.2 % of the diagonal, shares in %",
-           "time: trace of 50,000 rays over that of 54 probes at 256 in the same run, in picture order and shuffled; mib_traced: of a probe; mib_all: of all"], rows)
+           "time: trace of 50,000 rays over that of 54 probes at 256 in the same run, in picture order and shuffled; mib_traced: of all probes"], rows)
 
 
 ORDERS = {"0": "as ranked", "1": "most parallel (Donow 2016)", "2": "most parallel, signed (Donow 2016)", "3": "nearest to the line"}
@@ -382,7 +382,7 @@ def steps(arguments):
     race = {Path(entry["field"]).name.split(".")[-2]: entry for entry in json.loads(Path(at + ".race.json").read_text()) if "field" in entry}
     placed = {line.split()[0]: line.split() for line in Path(at + ".placed.txt").read_text().splitlines() if line.split()[:1] and line.split()[0] in steps}
     grid = placed["grid"][1] if "grid" in placed else count
-    row = {"label": f"{name}, {count}" + (f" (grid {grid})" if grid != count else "")}
+    row = {"label": f"{name}, {count}"} | ({"grid_probes": grid} if grid != count else {})
     for step in steps:
         key, ray = slug(step), race[step]
         row |= {f"{key}_wrong": f"{100 * (1 - ray['right_1']):.2f}", f"{key}_wrong_02": f"{100 * (1 - ray['right_02']):.2f}", f"{key}_unsure": f"{100 * ray['right_1_unsure']:.2f}",
@@ -413,7 +413,7 @@ def placed(arguments):
     rows["all"] = all_ | {"behind_best": f"{max(behind):.1f}"}
     write("placement_steps.json", "What each step of placing buys: glossy rays wrong within 1 % and 0.2 % of the diagonal, in %, and diffuse relMSE, FLIP and means over a scene's views",
           ["bench/pages/placement_table.sh"],
-          ["yardstick: plain greedy cover; grid: the best of place --fit-grid; chosen: greedy and exchange; gradient: that refined, as sconce place does; balls, balls_gradient: chosen and refined from the other skeleton",
+          ["yardstick: plain greedy cover; grid: the one that place --fit-grid takes, by what its corners see, which rays of ours may find worse than others (scene_methods: the best of 12 by its own tracer's rays); chosen: greedy and exchange; gradient: that refined, as sconce place does; balls, balls_gradient: chosen and refined from the other skeleton",
            "100,000 rays, all by our tracer, maps of 256; unsure: standard error of wrong rays by viewpoint; light of up to 8 bounces, as the references",
            "relMSE is without the reference's noise (256 paths in parts); Sponza's third view is of its roof, which is no part of the space that counts",
            "behind_best: by how many standard errors (the larger of the two) the default has more wrong rays than the best step, in the scene where it is most"], rows)
