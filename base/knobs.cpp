@@ -166,6 +166,7 @@ std::span<const KnobRow> knobRows()
                                               rowOf(placement),
                                               rowOf(lowFactor),
                                               rowOf(lookUpBias),
+                                              rowOf(lookUpView),
                                               rowOf(distanceBits),
                                               rowOf(tracedPaths),
                                               rowOf(timedRuns),

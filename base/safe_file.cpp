@@ -44,6 +44,11 @@ Result<SafeFile> SafeFile::create(const std::filesystem::path& target)
     std::error_code ignored;
     if (target.filename().empty() || std::filesystem::is_directory(target, ignored))
         return Error{ErrorCode::fileError, fmt::format("Cannot write '{}': it names a folder; give a file name.", target.string())};
+    // Which renaming would replace, /dev/null for everyone.
+    if (const auto there = std::filesystem::status(target, ignored);
+        std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+        return Error{ErrorCode::fileError,
+                     fmt::format("Cannot write '{}': it is a device or a pipe; give the name of a file.", target.string())};
     const std::string stem = (folderOf(target) / ".").string() + target.filename().string() + ".";
     // Not mkostemp: the process's mask of modes is the kernel's to apply, since asking for it changes it for every other thread.
     std::random_device chance;

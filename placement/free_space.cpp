@@ -176,32 +176,32 @@ Regions joinFreeCells(const DistanceField& field)
     return regions;
 }
 
-/// The free cell nearest to a point, looking at most `reach` cells around it; kNoCell when there is none.
-size_t freeCellNear(const DistanceField& field, const Regions& regions, vec3 point, int reach)
+/// The free cell nearest to a point of those that it sees, for a thin wall has free cells on both sides; of all when it sees none, as from
+/// within a surface. Looks at most `reach` cells around it; kNoCell when there is none.
+size_t freeCellNear(const DistanceField& field, const Regions& regions, const Visibility& visibility, vec3 point, int reach)
 {
     const glm::ivec3 centre = field.cellAt(point);
-    size_t best = kNoCell;
-    float bestDistance = 0.0f;
+    std::vector<std::pair<float, size_t>> near; // distance, cell
     for (int z = -reach; z <= reach; ++z)
         for (int y = -reach; y <= reach; ++y)
             for (int x = -reach; x <= reach; ++x)
             {
                 const glm::ivec3 cell = centre + glm::ivec3(x, y, z);
                 if (!field.inside(cell) || regions.of[field.index(cell)] == kNoRegion) continue;
-                const float distance = glm::distance(field.centre(cell), point);
-                if (best != kNoCell && distance >= bestDistance) continue;
-                best = field.index(cell);
-                bestDistance = distance;
+                near.emplace_back(glm::distance(field.centre(cell), point), field.index(cell));
             }
-    return best;
+    std::ranges::sort(near);
+    for (const auto& [distance, cell] : near)
+        if (visibility.unoccluded(point, field.centre(field.cell(cell)))) return cell;
+    return near.empty() ? kNoCell : near.front().second;
 }
 
 /// The free cell a camera stands in. It may stand outside the box, before the missing or culled front wall of what it looks at: then the
 /// first free cell on its axis.
-size_t cellOfCamera(const DistanceField& field, const Regions& regions, const Camera& camera)
+size_t cellOfCamera(const DistanceField& field, const Regions& regions, const Visibility& visibility, const Camera& camera)
 {
     if (field.inside(field.cellAt(camera.eye)))
-        if (const size_t cell = freeCellNear(field, regions, camera.eye, 2); cell != kNoCell) return cell;
+        if (const size_t cell = freeCellNear(field, regions, visibility, camera.eye, 2); cell != kNoCell) return cell;
     const float farthest = glm::length(vec3(field.size)) * field.voxel + glm::distance(camera.eye, field.origin);
     const int steps = int(std::min(1e6f, farthest / (0.5f * field.voxel)));
     for (int step = 0; step < steps; ++step)
@@ -360,7 +360,7 @@ Result<Seeds> findSeeds(const Scene& scene, const Visibility& visibility, const 
     std::vector<size_t> cells;
     for (const vec3& point : inside)
     {
-        cells.push_back(freeCellNear(field, regions, point, 3));
+        cells.push_back(freeCellNear(field, regions, visibility, point, 3));
         if (cells.back() != kNoCell) continue;
         const vec3 high = field.origin + field.voxel * vec3(field.size);
         return Error{
@@ -372,7 +372,7 @@ Result<Seeds> findSeeds(const Scene& scene, const Visibility& visibility, const 
     }
     if (cells.empty())
         for (const Camera& camera : scene.cameras)
-            if (const size_t cell = cellOfCamera(field, regions, camera); cell != kNoCell) cells.push_back(cell);
+            if (const size_t cell = cellOfCamera(field, regions, visibility, camera); cell != kNoCell) cells.push_back(cell);
 
     Seeds seeds;
     seeds.indoors = !cells.empty();

@@ -9,6 +9,9 @@
 namespace sconce
 {
 
+inline constexpr size_t kGridShapes = 4;                     // that a fitted grid is chosen among, in each of these poses:
+inline constexpr float kGridMargins[] = {0.5f, 0.25f, 0.0f}; // of a step, from the bounds
+
 /// The grids of about `count` points (within 15 %), those first whose cells in the bounds are most nearly cubes; at most `most` of them.
 std::vector<glm::ivec3> gridShapes(const Bounds& bounds, uint32_t count, size_t most);
 

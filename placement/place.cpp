@@ -30,9 +30,7 @@ constexpr double kRayShare = 0.8; // of the surfels where rays hit; the rest eve
 constexpr float kComfort = 0.09f; // of the probes' spacing, metres from surfaces
 // A pass of exchange reads candidates x surfels x probes bytes: beyond this many probes the greedy choice stands.
 constexpr size_t kMostExchanged = 600;
-constexpr size_t kGridShapes = 4;                     // that a fitted grid is chosen among, in each of these poses:
-constexpr float kGridMargins[] = {0.5f, 0.25f, 0.0f}; // of a step, from the bounds
-constexpr size_t kFitPoints = 20000;                  // of the coverage that it is chosen by; the standard error at 95 % is 0.15 %
+constexpr size_t kFitPoints = 20000; // of the coverage that it is chosen by; the standard error at 95 % is 0.15 %
 constexpr size_t kTableBytes = size_t(400) << 20;
 static_assert(knobs::count.most == kMostProbes);
 static_assert(knobs::method.is(knobs::kMethods[size_t(PlaceSettings::Method::sdf)]) && // the enums are in the choices' order

@@ -125,6 +125,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
 {
     // Whether the file can be written is known before hours of work, not after them.
     if (const auto writable = SafeFile::create(file); !writable) return writable.error();
+    if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     const auto plan = planEffects(checkScene(scene), desc.effects);
     if (!plan) return plan.error();
     Scene capped = scene;
@@ -133,6 +134,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.resolution = desc.resolution;
     settings.bounces = desc.bounces;
     settings.converged = desc.converged;
+    settings.surfaceTexels = desc.surfaceTexels;
     settings.submissionMs = desc.submissionMs;
     settings.rays = desc.rays;
     settings.faces = desc.faces;

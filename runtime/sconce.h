@@ -389,7 +389,8 @@ struct BakeDesc
     uint32_t resolution = knobs::resolution.value; // texels a side of an octahedral map; cube faces have half; memory grows with its square
     uint32_t bounces = knobs::bounces.value;       // times the baked light is re-injected at most, 0..64; each costs one gather a texel
     float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
-    std::string effects = "auto";             // as planEffects()
+    uint32_t surfaceTexels = knobs::surfaceTexels.value; // a side of a face of surface light, 26, 52 or 104; 0: none, probes light surfaces
+    std::string effects = "auto";                        // as planEffects()
     const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
     uint32_t liveLinks = knobs::liveLinks.value;    // of each surface texel, so that LiveLight moves lights; 0: they stay
     float submissionMs = knobs::submissionMs.value; // that the device is held at once at most, as far as passes can be cut

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <jerror.h>
 #include <jpeglib.h>
 #include <png.h>
 #include <webp/decode.h>
@@ -122,10 +123,12 @@ struct JpegReader
         self.fault = fmt::format("can't be decoded as JPEG ({}); export it again.", message);
         std::longjmp(self.escape, 1);
     }
-    // Warnings mean damaged data (a truncated file is only a warning to libjpeg): what it would make up is not what the author saw.
+    // Warnings mean damaged data (a truncated file is only a warning to libjpeg): what it would make up is not what the author saw. But for
+    // bytes between markers, and markers of a kind or version that it doesn't know: every viewer shows such files, whole.
     static void message(j_common_ptr common, int level)
     {
-        if (level < 0) fail(common);
+        const int code = common->err->msg_code;
+        if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_ADOBE_XFORM && code != JWRN_JFIF_MAJOR) fail(common);
     }
 };
 

@@ -170,7 +170,9 @@ template <class Thing, class Check> std::string firstFault(const char* kind, con
 Bounds Scene::bounds() const
 {
     Bounds box;
-    for (const vec3 p : positions) box.add(p);
+    for (const uvec3& triangle : triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            if (triangle[corner] < positions.size()) box.add(positions[triangle[corner]]);
     return box;
 }
 

@@ -48,6 +48,7 @@ void neighbourhood(ivec2 at, out vec3 mean, out vec3 deviation)
 /// The frame before at a point of its picture, of those pixels that showed the same surface; a: frames blended, 0 where none did.
 vec4 history(vec2 pixel, float distanceBefore, vec3 normal)
 {
+    distanceBefore = min(distanceBefore, 65504.0); // as halves keep it
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     ivec2 low = ivec2(floor(pixel - 0.5));

@@ -4,11 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "base/safe_file.h"
 #include "bench/reference/image_io.h"
 #include "bench/sweep/probe_sets.h"
 #include "placement/place.h"
 #include "runtime/field/field_data.h"
 #include "scene/scene_gltf.h"
+#include "shaders/shared/bake_passes.h"
 #include "tools/quality_option.h"
 
 namespace sconce::tools
@@ -153,6 +155,9 @@ Json reportOf(const PlaceOptions& options, const ProbeSet& set, const PlaceRepor
 int runPlace(const PlaceOptions& options, const Context& context)
 {
     const Stopwatch watch;
+    for (const std::string& name : {options.output, options.explain})
+        if (!name.empty())
+            if (const auto file = SafeFile::create(name); !file) return fail(file.error());
     // With the pins before the scene, which takes longer to read than they take to be refused.
     Result<PlaceSettings> settings = settingsOf(options);
     if (!settings) return fail(settings.error());
@@ -173,6 +178,10 @@ int runPlace(const PlaceOptions& options, const Context& context)
     PlaceReport report;
     Result<ProbeSet> set = placeProbes(*scene, *settings, report, consoleProgress(context));
     if (!set) return fail(set.error());
+    const uint64_t most = (uint64_t(1) << gpu::kLinkTexelBits) / (6ull * knobs::surfaceTexels.value * knobs::surfaceTexels.value);
+    if (set->probes.size() > most)
+        report.warnings.push_back(
+            fmt::format("bakes of more than {} probes need fewer --surface-texels than {}.", most, knobs::surfaceTexels.value));
     for (const std::string& warning : report.warnings) note(context, fmt::format("Note: {}", warning));
     if (set->scene.empty()) set->scene = scene->name;
     if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());

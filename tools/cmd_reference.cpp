@@ -57,6 +57,7 @@ int runReference(const ReferenceOptions& options, const Context& context)
     const Stopwatch watch;
     if (const std::string problem = options.pictures.problem(kReferenceLayers); !problem.empty())
         return fail(ErrorCode::badArgument, problem);
+    if (Status status = options.pictures.writable(); !status) return fail(status.error());
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
     if (!groups) return fail(groups.error());
     const Result<std::vector<MovingShape>> shapes = options.shapes.read();

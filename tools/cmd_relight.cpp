@@ -33,6 +33,11 @@ Status relit(FieldData& field, const RelightOptions& options, std::span<const ve
                          fmt::format("The lights of light field '{}' can't move; bake it with --live-links.", options.field)};
         return mixGroups(field, weights);
     }
+    for (const LightGroup& group : field.groups)
+        if (options.live.sunDirection && std::ranges::find(group.which.members, "sun") != group.which.members.end())
+            return Error{ErrorCode::badArgument,
+                         fmt::format("--sun: the sun of light field '{}' is in group '{}', which dims it where it stands; bake it without.",
+                                     options.field, group.which.name)};
     std::vector<Light> lights = field.live.lights;
     if (Status status = options.live.apply(lights); !status) return status;
     const Result<OwnDevice> device = OwnDevice::create({.device = options.device});

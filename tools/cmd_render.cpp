@@ -98,6 +98,8 @@ Result<Day> chooseLight(const RenderOptions& options, const FieldData& data, std
                      fmt::format("--tracer {} finds no light that has moved; relight the field (`sconce relight`), or leave it out.",
                                  options.tracer)};
     if (options.sunPath.empty()) return made;
+    if (const std::string fault = heldSunFault(made.light.fixed); !fault.empty())
+        return Error{ErrorCode::badArgument, fmt::format("--sun-path: {}; bake '{}' without that group.", fault, options.field)};
     auto path = sunPath(options.sunPath, options.frames);
     if (!path) return path.error();
     made.path = std::move(*path);
@@ -371,6 +373,8 @@ Result<Asked> prepare(const RenderOptions& options, const Context& context)
     // Before the scene is loaded: a misspelt layer should cost no waiting.
     if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : frameLayers()); !problem.empty())
         return Error{ErrorCode::badArgument, problem};
+    if (options.sunPath.empty()) // whose pictures have numbers
+        if (Status status = options.pictures.writable(); !status) return status.error();
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
     if (!groups) return groups.error();
     const Result<std::vector<MovingShape>> shapes = options.shapes.read();

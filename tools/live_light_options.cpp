@@ -149,6 +149,12 @@ void turnSun(std::vector<Light>& lights, const SunPlace& place)
     if (!(place.direction.y < 0.0f)) sun->intensity = vec3(0.0f);
 }
 
+std::string heldSunFault(std::span<const Light> fixed)
+{
+    const auto sun = std::ranges::find(fixed, LightType::directional, &Light::type);
+    return sun == fixed.end() ? "" : fmt::format("the sun '{}' is in a light group, which dims it where it stands", sun->name);
+}
+
 Result<std::vector<SunPlace>> sunPath(const std::filesystem::path& file, uint32_t count)
 {
     std::ifstream stream(file, std::ios::binary);

@@ -36,6 +36,9 @@ struct SunPlace
 /// Turns the first directional light, or adds one; below the horizon it gives nothing.
 void turnSun(std::vector<Light>& lights, const SunPlace& place);
 
+/// Why a sun can't be turned beside lights that stay; empty where it can.
+std::string heldSunFault(std::span<const Light> fixed);
+
 /// A path of the sun: lines of time,x,y,z or time,x,y,z,r,g,b after a header of these names, times ascending.
 /// @return  places at even times from the first line's to the last's, linear between lines
 /// Errors: fileError, badInput: the line, and what is wrong with it.

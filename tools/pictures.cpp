@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/listed.h"
+#include "base/safe_file.h"
+
 namespace sconce::tools
 {
 
@@ -40,16 +42,24 @@ std::string PictureOptions::problem(const std::vector<std::string>& layers) cons
     return {};
 }
 
+Status PictureOptions::writable() const
+{
+    for (const std::string& name : {output, png})
+        if (!name.empty())
+            if (const auto file = SafeFile::create(name); !file) return file.error();
+    return success();
+}
+
 Status PictureOptions::write(ImageSet images, Json& json) const
 {
     json["width"] = images.width;
     json["height"] = images.height;
+    std::vector<float> shown;
     if (const Layer* beauty = images.find("beauty"))
     {
         const float used = exposure.value_or(autoExposure(beauty->pixels));
         json["exposure"] = used;
-        if (!png.empty())
-            if (Status status = writePng(toneMap(beauty->pixels, used), images.width, images.height, png); !status) return status;
+        if (!png.empty()) shown = toneMap(beauty->pixels, used);
     }
     if (!aov.empty())
     {
@@ -58,7 +68,9 @@ Status PictureOptions::write(ImageSet images, Json& json) const
     }
     json["layers"] = Json::array();
     for (const Layer& layer : images.layers) json["layers"].push_back(layer.name);
-    return writeExr(images, output);
+    // The EXR first: a picture to look at can be made of it again.
+    if (Status status = writeExr(images, output); !status || shown.empty()) return status;
+    return writePng(shown, images.width, images.height, png);
 }
 
 } // namespace sconce::tools

@@ -20,6 +20,8 @@ struct PictureOptions
     void add(CLI::App* command, const std::vector<std::string>& layers);
     /// Empty when every name of --aov is one of `layers`, else the sentence. Asked before the work.
     std::string problem(const std::vector<std::string>& layers) const;
+    /// Whether the files can be written: before the work, too. Errors: fileError.
+    Status writable() const;
     /// Keeps the layers that --aov names, writes the EXR and the PNG, and adds size, layers and exposure to the results.
     Status write(ImageSet images, Json& json) const;
 };

@@ -89,7 +89,10 @@ part picture_all like_expected all
 octahedral=$work/octahedral.sconce
 part bake_octahedral bin/sconce bake "$(scene_of "$judged")" --probes "fields/$judged.probes.json" --resolution 320 --chart octahedral --bounces 0 -o "$octahedral" --no-journal --json --quiet
 # Lists that fill a large card several times over, each lane with several rays as the device has it, and with one.
-race=("rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-octree="$octahedral" --field wang="fields/$judged.sconce" --timed "$list" --warm-up "$warm" --json)
+# Its maps are octahedral ones of as many texels a side as the faces that they are made of, and to a power of two: memory as ours.
+wang=$work/wang.sconce
+part bake_wang bin/sconce bake "$(scene_of "$judged")" --probes "fields/$judged.probes.json" --resolution 512 --surface-texels 0 --bounces 0 -o "$wang" --no-journal --json --quiet
+race=("rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-octree="$octahedral" --field wang="$wang" --timed "$list" --warm-up "$warm" --json)
 part race bin/sconce_replay "${race[@]}" --runs 25
 part race_plain env SCONCE_RAYS_A_LANE=1 bin/sconce_replay "${race[@]}" --runs 25
 part race_cold bin/sconce_replay "${race[@]}" --runs 10 --cold 256

@@ -151,9 +151,13 @@ RayShaders traceRaysPass(Baseline baseline)
     return entryOf(baseline).rays;
 }
 
-LightShaders lightPasses(Baseline baseline)
+LightShaders lightPasses(Baseline baseline, float lookUpBias, float lookUpView)
 {
-    return entryOf(baseline).light;
+    LightShaders passes = entryOf(baseline).light;
+    if (baseline == Baseline::b0Plus)
+        passes.constants = {{gpu::kGridBiasId, std::bit_cast<uint32_t>(lookUpBias)},
+                            {gpu::kGridBiasViewId, std::bit_cast<uint32_t>(lookUpBias * lookUpView)}};
+    return passes;
 }
 
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits)

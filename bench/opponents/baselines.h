@@ -47,7 +47,9 @@ RayShaders traceRaysPass(Baseline baseline);
 
 /// Passes for makeIndirectLight(). Grids are lit by the eight corners of a point's cell: b0 by the weights of McGuire et al. 2017, b0plus
 /// by those of Majercik et al. 2021; what has lists is lit by them, as ours is.
-LightShaders lightPasses(Baseline baseline);
+/// @param lookUpBias  of b0plus, metres along the normal
+/// @param lookUpView  times as far towards the viewer
+LightShaders lightPasses(Baseline baseline, float lookUpBias = 0.1f, float lookUpView = 1.0f);
 
 /// The same text on the CPU, on all cores. The field is one of baselineField(). Misuse: spans of different length assert.
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits);

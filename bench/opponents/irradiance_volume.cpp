@@ -1,6 +1,7 @@
 #include "bench/opponents/irradiance_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -28,7 +29,10 @@ constexpr float kFarthestMove = 0.45f;     // of the grid's step
 constexpr uint32_t kMoves = 32;            // at most; each is one of what ships makes a frame
 constexpr float kFarthestSeen = 1.5f;      // of the diagonal between neighbours: distances beyond are the same
 constexpr float kDistanceExponent = 50.0f; // of the cosine that distances are averaged by
-constexpr size_t kBatch = 64;              // probes between two reports
+// Of all probes, and of one: DDGI's blending by 0.97 of what was before is a mean over some (1 + 0.97) / (1 - 0.97) frames of 256 rays.
+constexpr uint32_t kRaysOfAll = 1u << 26, kFewestRays = 1024, kMostRays = 16384;
+constexpr float kBackShare = 0.2f; // of its distance that a back face counts as, so that probes in solids see little
+constexpr size_t kBatch = 64;      // probes between two reports
 
 struct Entry
 {
@@ -64,8 +68,8 @@ class Filler
 {
 public:
     Filler(const RayScene& scene, Volume kind, const VolumeSettings& wanted, vec3 gridStep)
-        : rays(scene), tracer(scene, {}, wanted.bounces - 1), // of 0 bounces: one scattering, as its sum with 2 wraps round to
-          settings(wanted), volume(kind), step(gridStep), hasSolids(wanted.solids)
+        : rays(scene), tracer(scene, {}, wanted.bounces == 0 ? kStraight : wanted.bounces - 1), settings(wanted), volume(kind),
+          step(gridStep), hasSolids(wanted.solids)
     {
     }
 
@@ -157,8 +161,8 @@ private:
             s.distance = std::numeric_limits<float>::infinity();
             const auto hit = rays.closest(place, s.direction);
             if (!hit) continue; // the sky is among the frame's lights
-            s.distance = hit->t;
             s.back = hasSolids && glm::dot(hit->geometricNormal, s.direction) > 0.0f;
+            s.distance = s.back ? kBackShare * hit->t : hit->t;
             if (s.back) continue;
             Random random(settings.seed, probe, i);
             const PathLight light = tracer.trace(place, s.direction, random);
@@ -245,6 +249,11 @@ private:
     vec3 step; // metres
     bool hasSolids;
 };
+
+std::array<uint32_t, gpu::kVolumeHeaderWords> headerOf(float bias, float viewShare, float scale)
+{
+    return {std::bit_cast<uint32_t>(bias / scale), std::bit_cast<uint32_t>(bias * viewShare / scale)};
+}
 
 /// Marks a probe by its last half.
 void setInSolid(Volume volume, std::span<uint32_t> words)
@@ -350,7 +359,7 @@ Result<FieldData> irradianceVolume(FieldData field, Volume volume, const RayScen
     const vec3 step = placed ? vec3(std::cbrt(extent.x * extent.y * extent.z / float(info.probeCount))) : info.gridStep * info.scale;
     const uint32_t words = volumeWordsPerProbe(volume);
     made.irradiance.resize(gpu::kVolumeHeaderWords + made.probes.size() * words);
-    made.irradiance[0] = made.irradiance[1] = std::bit_cast<uint32_t>(settings.bias / info.scale);
+    std::ranges::copy(headerOf(settings.bias, settings.viewShare, info.scale), made.irradiance.begin());
     const std::span<uint32_t> maps = std::span(made.irradiance).subspan(gpu::kVolumeHeaderWords);
     const Filler filler(truth, volume, settings, step);
     std::vector<uint8_t> inSolid(made.probes.size(), 0); // not bits: threads write neighbours
@@ -374,6 +383,17 @@ Result<FieldData> irradianceVolume(FieldData field, Volume volume, const RayScen
     for (size_t probe = 0; probe < solid.size(); ++probe)
         if (solid[probe]) setInSolid(volume, maps.subspan(probe * words, words));
     return made;
+}
+
+Status moveLookUps(Gpu& gpu, const LightField& volume, float bias, float viewShare)
+{
+    const std::array words = headerOf(bias, viewShare, volume.info().scale);
+    return gpu.upload(volume.state().irradiance, 0, std::as_bytes(std::span(words)));
+}
+
+uint32_t raysOfVolume(size_t probes)
+{
+    return std::clamp(uint32_t(kRaysOfAll / std::max<size_t>(probes, 1)), kFewestRays, kMostRays);
 }
 
 Spirv volumePass(Volume volume)

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "bench/reference/ray_scene.h"
 #include "runtime/field/field_data.h"
+#include "runtime/field/light_field.h"
 #include "runtime/vulkan/pipeline.h"
 #include "scene/probe_grid.h"
 #include "shaders/opponents/volume.h"
@@ -28,15 +29,23 @@ std::optional<Volume> volumeNamed(std::string_view name);
 
 struct VolumeSettings
 {
-    uint32_t rays = 1024; // a probe: converged, where what ships adds up some hundred a frame
-    float bias = 0.1f;    // metres that look-ups are moved along the normal, and as many towards the viewer
-    uint32_t bounces = 2; // of the light that arrives at probes, as BakeSettings::bounces
+    uint32_t rays = 1024;   // a probe
+    float bias = 0.1f;      // metres that look-ups are moved along the normal
+    float viewShare = 1.0f; // of them towards the viewer; 4: 0.2 to 0.8, as Majercik et al. 2021 publish
+    uint32_t bounces = 2;   // of the light that arrives at probes, as BakeSettings::bounces
     uint64_t seed = 1;
     bool relocate = true; // a grid's probes in solids or close to surfaces are moved, as published for ddgi
     bool solids = true;   // what is seen from behind has an inside; false for scenes of open sheets, where no probe stands in a solid
 };
 
 uint32_t volumeWordsPerProbe(Volume volume);
+
+/// Rays a probe by which a volume's noise is what DDGI's is once it has settled, as far as there aren't too many probes for that.
+uint32_t raysOfVolume(size_t probes);
+
+/// Moves the look-ups of a volume that stands on a device otherwise than it was made with: metres along the normal, times as far towards
+/// the viewer. Errors: deviceFailure.
+Status moveLookUps(Gpu& gpu, const LightField& volume, float bias, float viewShare);
 
 /// A light field of a grid about a scene that has nothing but the places of its probes.
 FieldData bareGrid(const Scene& scene, const ProbeGrid& grid);

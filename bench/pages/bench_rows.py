@@ -78,7 +78,10 @@ def figures(point):
            "unresolved": of(point, "rays.unresolved", 100, 2), "reads": of(point, "rays.reads_mean", 1, 1), "trace_ms": of(point, "trace_ms.median", 1, 1),
            "frame_ms": of(point, "frame_ms.median", 1, 0), "mb": megabytes(point), "bake_s": of(point, "bake_s", 1, 0)}
     for term in ("beauty", "diffuse", "glossy"):
-        row |= {f"{term}_relmse": of(point, f"error.{term}.relmse"), f"{term}_unsure": of(point, f"error.{term}.relmse_unsure", 1, 5),
+        error = point.get("error", {}).get(term, {})
+        # What can't be told from none is given as what is unsure of it: an upper bound, which is no part of any ratio.
+        bound = "<" if error.get("relmse") is not None and error["relmse"] <= error.get("relmse_unsure", 0.0) else ""
+        row |= {f"{term}_relmse": bound + of(point, f"error.{term}.relmse"), f"{term}_unsure": of(point, f"error.{term}.relmse_unsure", 1, 5),
                 f"{term}_flip": of(point, f"error.{term}.flip", 1, 3), f"{term}_mean": of(point, f"error.{term}.mean", 1, 3)}
     if point.get("wrong"):
         row["wrong_picture"] = point["wrong"]
@@ -122,12 +125,21 @@ def write(name, what, commands, notes, rows, machine="Mesa's software Vulkan, ll
     (ROOT / "bench/results" / name).write_text(text)
 
 
+def number(text, point, figure):
+    """A figure of a point as it was measured, not as it is printed; None where there is none, or only a bound."""
+    if not text or text.startswith("<"):
+        return None
+    term, _, kind = figure.rpartition("_")
+    return point["error"][term]["relmse"] if kind == "relmse" else float(text)
+
+
 def hardest(scene, compared, but):
     """(ratio ours / theirs, method) of the opponent that leaves us worst, those of `but` left out; the ratio is None where no setting of ours is as good."""
     if isinstance(compared, str):
-        points = {point["method"]: figures(point)[compared] for point in scene["points"] if point["knob"] == "default"}
-        found = [(float(points["ours"]) / float(theirs), method) for method, theirs in points.items()
-                 if method not in ("ours", *PATHS, *but) and theirs and float(theirs) > 0]
+        points = {point["method"]: (figures(point)[compared], point) for point in scene["points"] if point["knob"] == "default"}
+        ours = number(*points["ours"], compared)
+        found = [(ours / theirs, method) for method, theirs in ((method, number(*entry, compared)) for method, entry in points.items())
+                 if method not in ("ours", *PATHS, *but) and ours is not None and theirs]
         return max(found, default=(None, None))
     error, cost, ratio = compared
     entries = [entry for entry in scene["analysis"]["equal"]
@@ -155,14 +167,23 @@ def least_to_most(values):
     return least if least == most else f"{least} to {most}"
 
 
+def better(rows, scene, paths):
+    """Of a path tracer's picture through our filters and without them the one whose diffuse light is less wrong."""
+    filtered, plain = (rows[f"{scene}__{key}{'' if paths == 1 else f'_{paths}'}"] for key in ("path_tracer_filtered", "path_tracer"))
+    return min(filtered, plain, key=lambda row: float(row["diffuse_relmse"].lstrip("<")))
+
+
 def summary(rows, scenes):
     """Over the scenes, the least and the most of what a method's figures are times ours, and KiB a probe."""
     found = {}
-    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "ddgi_bytes", "sh_grid_bytes", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64"):
+    for name in scenes:
+        for paths in (1, 16, 64):
+            rows[f"{slug(name)}__path_tracer_better_{paths}"] = better(rows, slug(name), paths) | {"label": f"path tracer, {paths} paths, filtered where that helps"}
+    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "ddgi_bytes", "sh_grid_bytes", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64", "path_tracer_better_1", "path_tracer_better_16", "path_tracer_better_64"):
         for figure in ("wrong", "wrong_02", "diffuse_relmse", "beauty_flip", "frame_ms"):
             pairs = [(rows[f"{slug(name)}__{method}"][figure], rows[f"{slug(name)}__ours"][figure]) for name in scenes
                      if f"{slug(name)}__{method}" in rows]  # a volume of equal bytes may need more probes than there may be
-            times = [float(theirs) / float(ours) for theirs, ours in pairs if theirs and ours]
+            times = [float(theirs) / float(ours) for theirs, ours in pairs if theirs and ours and "<" not in theirs + ours]
             if times:
                 found[f"{method}_{figure}"] = least_to_most(times)
     for method in ("ours", "ddgi"):
@@ -171,21 +192,16 @@ def summary(rows, scenes):
     return {"all": {"label": "theirs over ours, over the scenes"} | found}
 
 
-def at_best(points):
-    """Points, each volume's default being the one of its biases whose diffuse light is least wrong; its points of more probes are named `_bytes`."""
-    found = []
-    for point in points:
-        volume = point["method"] in ("ddgi", "ddgi-placed", "sh-grid")
-        if volume and point["knob"] == "default":
-            biased = [other for other in points if other["method"] == point["method"] and other["knob"] in ("default", "look-up bias") and "error" in other]
-            best = min(biased, key=lambda other: other["error"]["diffuse"]["relmse"], default=point)
-            found.append(best | {"knob": "default"} | ({"bias": best["value"]} if best is not point else {}))
-        elif volume and point["knob"] == "probes":
-            if all(int(other["value"]) <= int(point["value"]) for other in points if (other["method"], other["knob"]) == (point["method"], "probes")):
-                found.append(point | {"knob": "default", "method": point["method"] + " bytes"})
-        else:
-            found.append(point)
-    return found
+def named(points):
+    """Points, of which a volume's with most probes are named `_bytes`."""
+    most = lambda point: all(int(other["value"]) <= int(point["value"]) for other in points if (other["method"], other["knob"]) == (point["method"], "probes"))
+    return [point | {"knob": "default", "method": point["method"] + " bytes"}
+            if point["method"] in ("ddgi", "ddgi-placed", "sh-grid") and point["knob"] == "probes" and most(point) else point for point in points]
+
+
+def look_up(point):
+    """How far look-ups are moved, metres along the normal x times as far towards the viewer; empty where they aren't."""
+    return f"{point['look_up']['bias']:.2g} x{point['look_up']['view']:.2g}" if "look_up" in point else ""
 
 
 def kept(name, scenes):
@@ -200,11 +216,11 @@ def methods(files):
     before, others, of_before = kept("scene_methods.json", scenes)
     rows = {key: row for key, row in before.items() if key.split("__")[0] in others}
     for name, scene in scenes.items():
-        for point in at_best(scene["points"]):
+        for point in named(scene["points"]):
             if point["knob"] == "default" or (point["knob"] == "paths" and point["value"] in ("1", "4", "16", "64")):
                 key = slug(point["method"]) + ("" if point["knob"] == "default" else f"_{point['value']}")
                 rows[f"{slug(name)}__{key}"] = {"scene": name, "label": label(point)} | figures(point)
-                rows[f"{slug(name)}__{key}"] |= {"grid_shape": grid_shape(scene, point), "bias": point.get("bias", "")}
+                rows[f"{slug(name)}__{key}"] |= {"grid_shape": grid_shape(scene, point), "bias": look_up(point)}
     rows |= summary(rows, [*scenes, *others.values()])
     notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
              "..._unsure: the standard error of relMSE by the reference's noise",
@@ -705,7 +721,7 @@ def coverage(arguments):
     rows = json.loads("{" + Path(arguments[0]).read_text().rstrip().rstrip(",") + "}")
     write("placement_coverage.json", "Coverage of placements, % of ray hits and of area, quality of views, and seconds of placing, on samples no placement used", ["bench/pages/coverage_table.sh"],
           ["60,000 points: the standard error at 99.7 % is 0.02 %", "bound: share of the same points that some position which keeps the clearance sees (300 directions x 12 depths before each point)",
-           "yardstick: plain greedy cover over 1,500 random free points in the same free space; grid: the best of place --fit-grid; _probes: where it has another number",
+           "yardstick: plain greedy cover over 1,500 random free points in the same free space; grid: the pose of place --fit-grid's twelve that sees most; _probes: where it has another number",
            "quality: mean of cosine x spacing / (spacing + distance) of the best view; cpu: user and system"], rows)
 
 
@@ -715,7 +731,7 @@ def reflections(arguments):
     less = [f"{100 * (1 - float(row['ours_flip']) / float(row['grid_flip'])):.0f}" for key, row in rows.items() if not key.startswith("sponza") and row["camera"] not in ("cella", "door")]
     rows["all"] = {"label": "least and most", "others_less": least_and_most(less)}
     write("placement_pictures.json", "Reflections at equal count: every surface at roughness 0.15, 64 rays a pixel, no filter, --bounces 0", ["bench/pages/placement_pictures.sh"],
-          ["grid: not fitted; others_less: per cent less FLIP of ours in temple's main and colonnade and in modern_hall; errors hold the reference's noise of 256 paths"], rows)
+          ["grid: of place --fit-grid; others_less: per cent less FLIP of ours in temple's main and colonnade and in modern_hall; errors hold the reference's noise of 256 paths"], rows)
 
 
 def pipeline(arguments):

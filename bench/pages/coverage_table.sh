@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What placed probes see, beside plain greedy cover and the fitted grid, and how long placing takes, on samples that no placement used.
+# What placed probes see, beside plain greedy cover and the grid that sees most, and how long placing takes, on samples that no placement used.
 # Writes bench/results/placement_coverage.json; a quarter of an hour on 2 cores.
 # Environment: TABLE=sconce_placement_table, built when not given, SCONCE_SCENES [../shared/scenes], OUT=folder [out/coverage].
 set -euo pipefail

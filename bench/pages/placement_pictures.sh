@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Do better placed probes make better pictures? At equal count, uniform grid against ours: reflections of every surface at roughness 0.15, 64
+# Do better placed probes make better pictures? At equal count, a fitted uniform grid against ours: reflections of every surface at roughness 0.15, 64
 # rays a pixel and no filter, so that what differs is the rays, against paths without bounces; from every camera of three scenes.
 # Writes bench/results/placement_pictures.json and docs/placement_pictures.png; pictures stay in OUT, NAME.CAMERA.{grid,sdf,truth}.exr and
 # NAME.CAMERA.{grid,sdf}.png with the truth and the error. Half an hour on 2 cores.
@@ -17,7 +17,9 @@ one() # NAME FILE COUNT CAMERA...
     shift 3
     for method in grid sdf; do
         [[ -f $out/$name.$method.sconce ]] && continue
-        "$sconce" place "$file" --method $method --count "$count" -o "$out/$name.$method.json" --quiet >&2
+        local fit=()
+        [[ $method != grid ]] || fit=(--fit-grid)
+        "$sconce" place "$file" --method $method "${fit[@]}" --count "$count" -o "$out/$name.$method.json" --quiet >&2
         "$sconce" bake "$file" --probes "$out/$name.$method.json" --resolution 256 --bounces 0 -o "$out/$name.$method.sconce" --quiet >&2
     done
     for camera in "$@"; do

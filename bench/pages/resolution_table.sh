@@ -16,5 +16,5 @@ for entry in ${FIELDS:-54_256 16_256 256_256 1024_256 54_128 54_512 54_1024}; do
     [[ -f $at ]] || "$sconce" bake "$scene" --probes "$out/$count.json" -o "$at" --resolution "${entry#*_}" --bounces 0 --surface-texels 0 -q > /dev/null
     fields+=(--field "$at")
 done
-"$accuracy" "$scene" "${fields[@]}" --rays "${RAYS:-100000}" --runs "${RUNS:-12}" --json > "$out/race.json"
+"$accuracy" "$scene" "${fields[@]}" --rays "${RAYS:-100000}" --runs "${RUNS:-12}" --memory 4096 --json > "$out/race.json"
 python3 bench/pages/bench_rows.py resolution "$out/race.json"

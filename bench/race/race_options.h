@@ -25,6 +25,7 @@ inline void addRaceOptions(CLI::App& app, RaceSettings& race)
     add("--runs", race.runs, knobs::timedRuns);
     add("--timed", race.timed, knobs::timedRays);
     add("--warm-up", race.warmUp, knobs::warmUpSeconds);
+    add("--memory", race.memory, knobs::deviceMebibytes);
     app.add_option("--cold", race.cold,
                    "MiB that are written between timed passes, so that caches hold nothing of the field (default: 0; range: 0 to 4096 MiB)")
         ->check(CLI::Range(0u, 4096u));

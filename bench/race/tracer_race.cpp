@@ -237,7 +237,7 @@ Status raceTracers(Gpu& gpu, const std::string& device, const RaySet& set, const
 
 Status raceOnOwnDevice(const RaySet& set, const RaceSettings& settings, const std::optional<OutsideRunner>& outside)
 {
-    auto device = OwnDevice::create();
+    auto device = OwnDevice::create({.memoryBudget = settings.memory << 20});
     if (!device) return device.error();
     auto gpu = Gpu::create(device->host());
     if (!gpu) return gpu.error();

@@ -20,6 +20,7 @@ struct RaceSettings
     uint64_t seed = 1;                         // of their shuffling
     float warmUp = knobs::warmUpSeconds.value; // seconds of runs that don't count
     uint32_t cold = 0;                         // MiB written between timed passes, so that no cache holds the field
+    uint64_t memory = 0;                       // MiB of device memory at most, of all fields; 0: 80 % of the device's
     bool cpu = false;                          // trace on the CPU, too, and count the answers that differ
     bool json = false;
 };

@@ -30,6 +30,9 @@ struct PathLight
     vec3 glossy{0.0f};
 };
 
+/// PathTracer's bounceCount of paths that scatter once.
+inline constexpr uint32_t kStraight = ~0u;
+
 class PathTracer
 {
 public:

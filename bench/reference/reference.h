@@ -20,6 +20,7 @@ struct ReferenceSettings
     uint32_t height = knobs::height.value;       // pixels
     uint32_t samples = knobs::paths.value;       // paths a pixel; noise falls with the square root
     uint32_t bounces = knobs::pathBounces.value; // times baked light is re-injected: a path scatters at most bounces + 2 times
+    bool straight = false;                       // of indirect light that of emitters and sky alone, straight from there: one scattering
     uint64_t firstPath = 0;                      // of each pixel: others are another picture's, see joined()
     uint64_t seed = knobs::pathSeed.value;       // same seed, same bytes, whatever the number of threads
     std::optional<float> roughness;              // [0,1]; set: the roughness of every surface

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 std::string answersOf(const RayScene& rays, const ReferenceSettings& settings)
 {
     constexpr uint32_t kPaths = 256;
-    const PathTracer tracer(rays, settings.roughness, settings.bounces);
+    const PathTracer tracer(rays, settings.roughness, settings.straight ? kStraight : settings.bounces);
     std::string bits;
     for (uint32_t i = 0; i < kPaths; ++i)
     {
@@ -46,6 +46,7 @@ std::string pictureKey(const RayScene& rays, const std::string& scene, const Ref
                 {"paths", {s.samples, s.bounces, s.seed}},
                 {"layers", {s.guides, s.pixelCentre, s.parts}}};
     if (s.roughness) all["roughness"] = *s.roughness;
+    if (s.straight) all["straight"] = true;
     return keyOf(all);
 }
 

@@ -135,18 +135,14 @@ Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings)
         planner.addDefault(paths);
         for (const std::string_view value : findKnob("paths")->sweep) planner.addVaried(paths, *findKnob("paths"), std::string(value));
     }
-    // Volumes at the bias that suits the scene, and with as many bytes as our diffuse light is read from.
-    const size_t without = bytesPerProbe(gpu::kChartCube, ours.resolution, 0),
+    // Volumes with as many bytes as our diffuse light is read from: surface light, cells, and the distances that tell which probe sees a
+    // point.
+    const size_t without = bytesPerProbe(gpu::kChartCube, ours.resolution, 0), face = ours.resolution / 2,
                  surface = bytesPerProbe(gpu::kChartCube, ours.resolution, knobs::surfaceTexels.value) - without +
-                           2 * gpu::kPatches * sizeof(uint32_t);
+                           (2 * gpu::kPatches + 6 * face * face) * sizeof(uint32_t);
     for (const PointSettings& volume : theirs)
-    {
-        if (!volume.volume()) continue;
-        for (const std::string_view value : findKnob("look-up bias")->sweep)
-            planner.addVaried(volume, *findKnob("look-up bias"), std::string(value));
-        if (*volume.volume() != Volume::ddgiPlaced)
+        if (volume.volume() && *volume.volume() != Volume::ddgiPlaced)
             planner.addProbeCounts(volume, {double(surface) / double(sizeof(uint32_t) * volumeWordsPerProbe(*volume.volume()))});
-    }
     if (settings.methodsOnly) return std::move(planner.points);
 
     planner.addProbeCounts(ours, {0.25, 0.5, 2.0});

@@ -35,6 +35,10 @@ constexpr uint32_t kJudgedMaps = 128;                           // texels, of gr
 constexpr uint32_t kJudgedRays = 65536, kFewestJudgedRays = 64; // of all probes of a volume on such a grid, and of one at least
 constexpr uint64_t kPathSeed = 1000;                            // the path tracer's paths are not the reference's
 
+// Of look-ups: metres along the normal, which reach beyond what is best in any view, and times as far towards the viewer: not at all, as
+// far, and as Majercik et al. 2021 publish.
+constexpr float kLookUpBiases[] = {0.0f, 0.05f, 0.1f, 0.2f, 0.4f, 0.8f, 1.6f, 3.2f}, kLookUpViews[] = {1.0f, 0.0f, 4.0f};
+
 double secondsNow()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -140,11 +144,7 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
         if (!light) return light.error();
         auto renderer = rendererOf(settings, *light, settings.frame, {});
         if (!renderer) return renderer.error();
-        auto frame = (*renderer)->render(camera);
-        if (!frame) return frame.error();
-        const Result<Json> errors = errorsOf(lightLayers(*frame));
-        if (!errors) return errors.error();
-        return (*errors)["diffuse"]["relmse"].is_number() ? (*errors)["diffuse"]["relmse"].get<double>() : HUGE_VAL;
+        return diffuseError(settings, **renderer);
     }
     std::vector<vec3> positions;
     for (int z = 0; z < grid.count.z; ++z)
@@ -168,9 +168,12 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
     return 2.0 - score->right1 - score->right02;
 }
 
-/// Not kept: its light takes seconds.
 Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress)
 {
+    PointSettings unbiased = settings;
+    unbiased.lookUpBias = unbiased.lookUpView = 0.0f;
+    unbiased.frame = {};
+    const std::string key = settings.method + settingsJson(unbiased).dump();
     Result<FieldData> places = Error{ErrorCode::badInput, "A volume has no probes."};
     if (volume == Volume::ddgiPlaced)
         places = fields.fieldFor(settings, cost, progress);
@@ -188,9 +191,15 @@ Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume vo
     }
     if (!places) return places;
     const double begin = secondsNow();
-    auto made = volumeOn(std::move(*places), settings, volume, progress, VolumeSettings().rays);
-    cost["bake_s"] = secondsNow() - begin;
-    return made;
+    auto made = volumes.find(key);
+    if (made == volumes.end())
+    {
+        auto filled = volumeOn(std::move(*places), settings, volume, progress, raysOfVolume(places->probes.size()));
+        if (!filled) return filled;
+        made = volumes.emplace(key, FilledVolume{std::move(*filled), secondsNow() - begin}).first;
+    }
+    cost["bake_s"] = made->second.seconds;
+    return made->second.field;
 }
 
 Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress,
@@ -198,7 +207,6 @@ Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& se
 {
     VolumeSettings wanted;
     wanted.rays = raysOfProbe;
-    wanted.bias = settings.lookUpBias;
     wanted.bounces = settings.bounces;
     wanted.seed = desc.settings.seed;
     wanted.solids = checkScene(desc.scene).openEdgeShare <= kMostOpenEdges;
@@ -232,7 +240,27 @@ Status SceneBench::makeReference(const std::optional<float>& roughness, const Pr
                        {"diffuse", numberOrNull(reference.estimatedRelMseDiffuse)},
                        {"glossy", numberOrNull(reference.estimatedRelMseGlossy)}}}};
     referenceImages = std::move(reference.images);
+    settings.straight = true;
+    settings.seed += kPathSeed; // noise of its own
+    auto straight = keptReference(*truth, fields.sceneKey(), settings,
+                                  {fields.cached("references", "", "").parent_path(), desc.settings.referenceUntil}, progress);
+    if (!straight) return straight.error();
+    lampsAndSky = straight->reference.images.find("diffuse_indirect")->pixels;
     return writeReferencePictures();
+}
+
+/// What surfaces get straight from lamps and sky is no part of what probes are compared by: a frame's own pass for it, of few samples and
+/// a filter, would be an error that methods without surface light have for no reason of theirs. They are given it without error and at no
+/// time.
+void SceneBench::addLamps(const PointSettings& settings, RenderedFrame& frame) const
+{
+    if (!settings.givenLamps()) return;
+    for (size_t i = 0; i < frame.beauty.size(); ++i)
+    {
+        const vec3 light = glm::make_vec3(lampsAndSky.data() + 3 * i);
+        frame.diffuseIndirect[i] += light;
+        frame.beauty[i] += light;
+    }
 }
 
 Status SceneBench::writeReferencePictures()
@@ -274,13 +302,15 @@ Status SceneBench::prepare()
 }
 
 /// The scene as frames of a kind need it; made once.
-Result<const DeviceScene*> SceneBench::sceneOf(const IndirectEffects& effects, const Progress& progress)
+Result<const DeviceScene*> SceneBench::sceneOf(const PointSettings& settings, const IndirectEffects& effects, const Progress& progress)
 {
     // Frames differ in their scene by area lights alone: with shadow maps, or without where rays through the field shadow them.
-    std::optional<DeviceScene>& scene = deviceScenes[effects.fieldShadows ? 1 : 0];
+    const bool given = settings.givenLamps();
+    std::optional<DeviceScene>& scene = deviceScenes[given ? 2 : effects.fieldShadows ? 1 : 0];
     if (!scene)
     {
-        const DeviceSceneDesc wanted = sceneForFrames({.fieldShadows = effects.fieldShadows}, {});
+        DeviceSceneDesc wanted = sceneForFrames({.fieldShadows = effects.fieldShadows}, {});
+        if (given) wanted.light.emitterSamples = wanted.light.skySamples = 0;
         auto uploaded = DeviceScene::create(gpu, desc.scene, fieldSpace(desc.scene.bounds()), wanted, progress);
         if (!uploaded) return uploaded.error();
         scene.emplace(std::move(*uploaded));
@@ -317,10 +347,69 @@ Result<SceneBench::Live> SceneBench::enliven(const PlannedPoint& point, const Pr
         frame.normalOffset += baselineOffset(*opponent) / (info.diagonal * info.scale);
     }
     if (settings.filteredPaths()) showPaths(frame, settings.paths);
+    if (settings.biasedLookUps())
+    {
+        const auto lookUps = lookUpsOf(live, frame, progress);
+        if (!lookUps) return lookUps.error();
+        live.fieldCost["look_up"] = {{"bias", lookUps->bias}, {"view", lookUps->view}};
+        if (live.untraced)
+        {
+            if (auto status = moveLookUps(gpu, *live.untraced, lookUps->bias, lookUps->view); !status) return status.error();
+        }
+        else
+            frame.lightShaders = lightPasses(*settings.opponent(), lookUps->bias, lookUps->view);
+    }
     auto renderer = rendererOf(settings, live.untraced ? *live.untraced : live.tracer->lightField(), std::move(frame), progress);
     if (!renderer) return renderer.error();
     live.renderer = std::move(*renderer);
     return live;
+}
+
+/// Of a point whose look-ups have no bias of their own the one by which its diffuse light is least wrong in the picture that is judged.
+Result<SceneBench::LookUps> SceneBench::lookUpsOf(Live& live, const RenderSettings& frame, const Progress& progress)
+{
+    const PointSettings& settings = live.plan->settings;
+    if (knobs::lookUpBias.inRange(settings.lookUpBias)) return LookUps{settings.lookUpBias, settings.lookUpView};
+    LookUps best{};
+    double least = HUGE_VAL;
+    std::unique_ptr<SceneRenderer> renderer;
+    for (const float bias : kLookUpBiases)
+        for (const float view : kLookUpViews)
+        {
+            if (bias == 0.0f && view != kLookUpViews[0]) continue; // there is nothing to share out
+            RenderSettings own = frame;
+            if (live.untraced)
+            {
+                if (auto status = moveLookUps(gpu, *live.untraced, bias, view); !status) return status.error();
+            }
+            else
+                own.lightShaders = lightPasses(*settings.opponent(), bias, view);
+            if (!live.untraced || !renderer)
+            {
+                auto made = rendererOf(settings, live.untraced ? *live.untraced : live.tracer->lightField(), std::move(own), progress);
+                if (!made) return made.error();
+                renderer = std::move(*made);
+            }
+            const Result<double> error = diffuseError(settings, *renderer);
+            if (!error) return error.error();
+            if (*error < least) least = *error, best = {bias, view};
+        }
+    return best;
+}
+
+/// relMSE of a point's diffuse light; endless where it isn't a number.
+Result<double> SceneBench::diffuseError(const PointSettings& settings, SceneRenderer& renderer) const
+{
+    auto frame = renderer.render(camera);
+    if (!frame) return frame.error();
+    addLamps(settings, *frame);
+    CompareSettings compared;
+    compared.layer = "diffuse_indirect";
+    compared.psnr = compared.flip = compared.mse = compared.mean = false;
+    compared.sameSurface = true;
+    const auto found = compareImages(lightLayers(*frame), referenceImages, compared);
+    if (!found) return found.error();
+    return std::isfinite(*found->relMse) ? *found->relMse : HUGE_VAL;
 }
 
 Result<std::unique_ptr<SceneRenderer>> SceneBench::rendererOf(const PointSettings& settings, const LightField& field, RenderSettings frame,
@@ -334,7 +423,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneBench::rendererOf(const PointSetting
         frame.lightShaders.gather = volumePass(*volume);
         frame.effects.rough = frame.effects.glossy = frame.effects.mirror = false; // it holds none
     }
-    auto scene = sceneOf(frame.effects, progress);
+    auto scene = sceneOf(settings, frame.effects, progress);
     if (!scene) return scene.error();
     return SceneRenderer::create(gpu, **scene, field, frame);
 }
@@ -452,6 +541,7 @@ Result<Json> SceneBench::measure(Live& live, const Progress& progress)
         for (size_t i = 0; i < frame->beauty.size(); ++i)
             frame->beauty[i] = glm::make_vec3(direct + 3 * i) + frame->diffuseIndirect[i] + frame->glossyIndirect[i];
     }
+    addLamps(point.settings, *frame);
     auto errors = errorsOf(lightLayers(*frame));
     if (!errors) return errors.error();
     json["error"] = std::move(*errors);

@@ -96,14 +96,23 @@ private:
     bool software() const; // the device is the CPU
     Result<double> wrongOnGrid(const ProbeGrid& grid, const PointSettings& settings);
     Result<FieldData> volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress, uint32_t rays);
+    /// How far look-ups are moved.
+    struct LookUps
+    {
+        float bias, view; // as PointSettings has them
+    };
+    Result<LookUps> lookUpsOf(Live& live, const RenderSettings& frame, const Progress& progress);
+    Result<double> diffuseError(const PointSettings& settings, SceneRenderer& renderer) const;
     Result<std::unique_ptr<SceneRenderer>> rendererOf(const PointSettings& settings, const LightField& field, RenderSettings frame,
                                                       const Progress& progress);
     Result<FieldData> volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress);
+    /// What a point's frame shows, with the light of lamps and sky that it is given.
+    void addLamps(const PointSettings& settings, RenderedFrame& frame) const;
     Status makeTracer(Live& live, const Progress& progress);
     Status makePicture(Live& live, const Progress& progress);
     Status makeVolume(Live& live, Volume volume, const Progress& progress);
     Status makeTruth();
-    Result<const DeviceScene*> sceneOf(const IndirectEffects& effects, const Progress& progress);
+    Result<const DeviceScene*> sceneOf(const PointSettings& settings, const IndirectEffects& effects, const Progress& progress);
     Result<Json> errorsOf(const ImageSet& picture) const;
     ReferenceSettings pathSettings(const PlannedPoint& point) const;
     Status writeReferencePictures();
@@ -116,9 +125,16 @@ private:
     Camera camera;
     Json referenceJson; // null until the reference is there
     ImageSet referenceImages;
+    std::vector<float> lampsAndSky; // diffuse light straight from there, of the path tracer
+    struct FilledVolume
+    {
+        FieldData field;
+        double seconds = 0.0;
+    };
+    std::map<std::string, FilledVolume> volumes; // by all settings but the look-ups': their light takes long
     std::optional<RayScene> truth;
     std::optional<RaySet> rays;
-    std::array<std::optional<DeviceScene>, 2> deviceScenes; // whose samples of area light have maps, and have none
+    std::array<std::optional<DeviceScene>, 3> deviceScenes; // whose samples of area light have maps, have none, and without such samples
     std::optional<GpuTimer> timer;
 };
 

@@ -81,7 +81,7 @@ std::vector<SweptKnob> makeKnobs()
     const std::vector<std::string_view> ours{"ours"}, tracers{"ours", "ours-grid", "b0", "b0plus", "b0plus-octree", "wang"},
         opponents{"b0", "b0plus", "b0plus-octree", "wang"}, lists{"ours", "ours-grid", "b0plus-octree", "wang", "ddgi-placed"},
         paths{kPathTracer, kFilteredPaths}, fields{"ours", "ours-grid"}, volumes{"ddgi", "ddgi-placed", "sh-grid"},
-        placed = all(tracers, volumes), mapped = all(tracers, {"ddgi-placed"});
+        biased = all({"b0plus"}, volumes), placed = all(tracers, volumes), mapped = all(tracers, {"ddgi-placed"});
     using enum Stage;
     return {
         knob("probes", place, placed, {}, knobs::benchProbes, SCONCE_FIELD(probes)),
@@ -95,7 +95,8 @@ std::vector<SweptKnob> makeKnobs()
         knob("compact", bake, fields, {"off", "on"}, knobs::compact, SCONCE_FIELD(compact)),
         knob("octree voxels", bake, lists, {"32", "64", "128", "256"}, knobs::octreeVoxels, SCONCE_FIELD(octreeVoxels)),
         knob("low factor", trace, opponents, {}, knobs::lowFactor, SCONCE_FIELD(lowFactor)),
-        knob("look-up bias", trace, volumes, {"0", "0.05", "0.1", "0.2", "0.4"}, knobs::lookUpBias, SCONCE_FIELD(lookUpBias)),
+        knob("look-up bias", trace, biased, {}, knobs::lookUpBias, SCONCE_FIELD(lookUpBias)),
+        knob("look-up view", trace, biased, {}, knobs::lookUpView, SCONCE_FIELD(lookUpView)),
         knob("distance bits", trace, ours, {"16", "24", "32"}, knobs::distanceBits, SCONCE_FIELD(distanceBits)),
         knob("ranked", trace, ours, {"1", "2", "3", "4"}, knobs::ranked, SCONCE_FIELD(quality.trace.ranked)),
         knob("hand-offs", trace, ours, {"0", "2", "8", "24", "64"}, knobs::maxHandoffs, SCONCE_FIELD(quality.trace.maxHandoffs)),

@@ -38,10 +38,11 @@ struct PointSettings
     bool fieldGather = knobs::gather.is("field");       // surface light gathered through the field, not by rays to triangles
     int octreeVoxels = knobs::octreeVoxels.value;       // OctreeSettings::voxels
     uint32_t lowFactor = knobs::lowFactor.value;        // of an opponent; 0: bestLowFactor
-    float lookUpBias = knobs::lookUpBias.value;         // of a volume of irradiance, metres
-    int distanceBits = knobs::distanceBits.value;       // of a texel of ours (bench/race/distance_format.h)
-    bool compact = knobs::compact.value;                // of ours
-    Quality quality;                                    // of our tracer
+    float lookUpBias = knobs::lookUpBias.value; // of B0+'s light and of a volume of irradiance, metres along the normal; below 0: the best
+    float lookUpView = knobs::lookUpView.value; // times as far towards the viewer
+    int distanceBits = knobs::distanceBits.value; // of a texel of ours (bench/race/distance_format.h)
+    bool compact = knobs::compact.value;          // of ours
+    Quality quality;                              // of our tracer
     RenderSettings frame;
     uint32_t paths = knobs::tracedPaths.value; // a pixel, of the path tracer
 
@@ -49,6 +50,9 @@ struct PointSettings
     bool pathTraced() const { return method == kPathTracer || filteredPaths(); }
     std::optional<Baseline> opponent() const { return baselineNamed(method); }
     std::optional<Volume> volume() const { return volumeNamed(method); }
+    bool biasedLookUps() const { return volume() || opponent() == Baseline::b0Plus; } // lookUpBias is one of theirs
+    /// Whose diffuse light is read where probes are: the light of lamps and sky is the path tracer's, beside what it reads.
+    bool givenLamps() const { return (volume() || opponent()) && !frame.effects.tracedDiffuse; }
     uint32_t chart() const;              // that the method reads
     uint32_t bakedSurfaceTexels() const; // 0 for whoever doesn't read surface light
 };

@@ -500,6 +500,7 @@ Status Bake::describe(const Scene& scene, std::span<const vec3> probes, const Ba
     if (const std::string fault = argumentFault(probes, settings); !fault.empty()) return refused(fault);
     if (scene.triangles.empty())
         return Error{ErrorCode::badInput, fmt::format("The scene '{}' has no triangles; there is nothing to bake", scene.name)};
+    if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     gpu::LightFieldInfo& info = field.info;
     info = fieldSpace(scene.bounds());
     info.sky = scene.sky;

@@ -93,7 +93,8 @@ bool MapReader::failed(uint32_t probe) const
 void MapReader::run(std::stop_token stop)
 {
     std::unique_lock lock(mutex);
-    while (changed.wait(lock, stop, [&] { return !wanted.empty() && !free.empty(); }))
+    // wait() says what there is to do after a stop, too: what nobody waits for any more isn't read.
+    while (changed.wait(lock, stop, [&] { return !wanted.empty() && !free.empty(); }) && !stop.stop_requested())
     {
         Maps maps = std::move(free.back());
         free.pop_back();

@@ -54,7 +54,7 @@ Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const 
 /// @param images     each with its binding; what a pass lacks of them is bound to something that is there
 /// @param constants  besides the field's and whether the pass runs on tiles
 Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
-                                      std::initializer_list<ShaderConstant> constants)
+                                      std::vector<ShaderConstant> constants)
 {
     std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                                                     {gpu::kMovingBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
@@ -139,12 +139,13 @@ Status IndirectLight::State::makeGather()
     const GpuImage& diffuse = diffuseImage ? diffuseImage : roughImage;
     const GpuImage& rough = effects.rough ? roughImage : diffuseImage;
     const Spirv shader = shaders.gather.empty() ? Spirv(gather_light_comp) : shaders.gather;
-    return makePass(gatherPass, gatherSet, shader, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}},
-                    {{gpu::kGatherDiffuseId, gathersDiffuse() ? 1u : 0u},
-                     {gpu::kGatherRoughId, effects.rough ? 1u : 0u},
-                     {gpu::kLookUpListId, gatherLookUps()},
-                     {gpu::kByPatchesId, effects.patches ? 1u : 0u},
-                     {gpu::kBySurfaceId, readsSurfaces() ? 1u : 0u}});
+    std::vector<ShaderConstant> constants = {{gpu::kGatherDiffuseId, gathersDiffuse() ? 1u : 0u},
+                                             {gpu::kGatherRoughId, effects.rough ? 1u : 0u},
+                                             {gpu::kLookUpListId, gatherLookUps()},
+                                             {gpu::kByPatchesId, effects.patches ? 1u : 0u},
+                                             {gpu::kBySurfaceId, readsSurfaces() ? 1u : 0u}};
+    constants.insert(constants.end(), shaders.constants.begin(), shaders.constants.end());
+    return makePass(gatherPass, gatherSet, shader, {{gpu::kGatherDiffuseBinding, &diffuse}, {gpu::kGatherRoughBinding, &rough}}, constants);
 }
 
 Status IndirectLight::State::makeLamps()

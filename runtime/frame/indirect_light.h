@@ -16,8 +16,9 @@ namespace sconce
 /// opponents through them.
 struct LightShaders
 {
-    Spirv glossy; // of the traced terms
-    Spirv gather; // of diffuse light and rough reflections that are read
+    Spirv glossy;                               // of the traced terms
+    Spirv gather;                               // of diffuse light and rough reflections that are read
+    std::vector<ShaderConstant> constants = {}; // of gather, besides ours
 };
 
 /// What stands behind the handle IndirectLight.
@@ -63,7 +64,7 @@ private:
         const GpuImage* image;
     };
     Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
-                    std::initializer_list<ShaderConstant> constants);
+                    std::vector<ShaderConstant> constants);
     Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();

@@ -34,13 +34,16 @@ public:
         collect(lamps);
     }
 
-    /// @param count  above 0
-    /// @param most   where some lamps got none of `count`
+    /// @param count  0: none, and nothing is asked of the mesh
+    /// @param most   where there are too many lamps for `count`
     void draw(uint32_t count, uint32_t most)
     {
-        if (!(power > 0.0)) return;
+        if (count == 0 || !(power > 0.0)) return;
         outside = outsideOf(scene, shining);
-        spread(count);
+        partOf = joinedParts(scene, shining);
+        size_t parts = 0;
+        for (size_t i = 0; i < partOf.size(); ++i) parts += partOf[i] == i;
+        spread(std::max(count, uint32_t(std::min<size_t>(most, kSamplesOfALamp * parts))));
         keepPower(most);
         list.header.emitterCount += uint32_t(sampled.size());
         for (size_t i = 0; i < sampled.size(); ++i) list.lights[first + i].area = float(emitters[sampled[i]].patch);
@@ -135,7 +138,6 @@ private:
             double power = 0.0, carried = 0.0;
             size_t brightest = 0; // emitter
         };
-        const std::vector<uint32_t> partOf = joinedParts(scene, shining);
         std::vector<Part> parts(emitters.size()); // by the first of its emitters
         for (size_t i = 0; i < emitters.size(); ++i)
         {
@@ -164,6 +166,7 @@ private:
     const size_t first;
     std::vector<Emitter> emitters;
     std::vector<uint32_t> shining; // their triangles
+    std::vector<uint32_t> partOf;  // the first emitter that each hangs together with
     std::vector<Outside> outside;
     std::vector<size_t> sampled; // emitter of each sample
     double power = 0.0, area = 0.0;

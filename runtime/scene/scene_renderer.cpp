@@ -27,7 +27,7 @@ constexpr VkFormat kGBufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kGeometricNormalFormat = VK_FORMAT_R32_UINT;
 constexpr VkFormat kPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // what is shown and written, of any brightness
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr float kNear = 1e-4f; // field units; depth is near / W, so its value costs no precision
+constexpr float kNear = 1e-6f; // field units, a millimetre of a kilometre; depth is near / W, so its value costs no precision
 
 struct CameraBasis
 {
@@ -194,6 +194,8 @@ Status SceneRenderer::makeDiffuse()
         areaSet.write(gpu::kAreaDiffuseBinding, indirect->state().diffuseImage.view(), VK_IMAGE_LAYOUT_GENERAL);
         areaSet.write(gpu::kTileBinding, indirect->state().tileList->buffer());
     }
+    // Read where probes are, it has none.
+    if (!hasAreaLight() && !settings.effects.tracedDiffuse && !settings.effects.patches) return success();
     const Denoiser::Desc desc{scene.layout(), gpu::kTermDiffuse, false, settings.effects.temporal, false, indirect->state().tileList.get(),
                               settings.width, settings.height};
     auto made = Denoiser::create(gpu, desc, indirect->state().frame, indirect->state().diffuseImage, filterScratch());

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "base/parallel.h"
 #include "shaders/shared/frame.h"
 
@@ -149,6 +151,12 @@ Result<TextureArray> makeTextureArray(Gpu& gpu, const Scene& scene, TextureKind 
         else
             use(material.baseColorTexture), use(material.emissionTexture);
     }
+    if (const uint32_t most = gpu.properties.limits.maxImageArrayLayers; layers.size() > most)
+        return Error{
+            ErrorCode::missingFeature,
+            fmt::format("The materials of scene '{}' use {} images as {}, and '{}' binds {} in one array; join small images, or let "
+                        "materials share them",
+                        scene.name, layers.size(), kind == TextureKind::color ? "colour" : "data", gpu.properties.deviceName, most)};
     // All layers of an array have one size. A power of two, so that every mip is exactly half of the one above.
     size = std::min(size, std::bit_floor(maxSize));
 

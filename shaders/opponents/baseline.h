@@ -9,5 +9,9 @@ const uint kBaselineB0Plus = 1u;       // the same with its known defects mended
 const uint kBaselineB0PlusOctree = 2u; // that march, but the probes come from the octree's ranked lists
 const uint kBaselineWang = 3u;         // Wang et al. 2019: the same lists, a min/max chain marched in the octahedral map
 
+// Specialization constants of grid_light.glsl, beside those of gather_light.glsl.
+const uint kGridBiasId = 60u;
+const uint kGridBiasViewId = 61u;
+
 SCONCE_STRUCTS_END
 #endif

@@ -40,11 +40,24 @@ SCONCE_FN uint baselineProbe(SCONCE_INOUT(B0Ray) ray, real tMax)
 
 SCONCE_FN vec3 b0GridPoint(vec3 p) { return (p - vec3(field.gridOrigin)) / vec3(field.gridStep); }
 
+/// The last cell along an axis. The supplement's has corners beyond the grid, which wrap round; all of the last true cell's are probes.
+SCONCE_FN real b0LastCell(uint count)
+{
+    if (kPublished) return real(count - 1u);
+    return real(max(int(count) - 2, 0));
+}
+
 SCONCE_FN ivec3 b0Cell(vec3 p)
 {
     vec3 g = b0GridPoint(p);
-    return ivec3(int(clamp(floor(g.x), real(0.0), real(field.gridX - 1u))), int(clamp(floor(g.y), real(0.0), real(field.gridY - 1u))),
-                 int(clamp(floor(g.z), real(0.0), real(field.gridZ - 1u))));
+    return ivec3(int(clamp(floor(g.x), real(0.0), b0LastCell(field.gridX))), int(clamp(floor(g.y), real(0.0), b0LastCell(field.gridY))),
+                 int(clamp(floor(g.z), real(0.0), b0LastCell(field.gridZ))));
+}
+
+/// Whether a corner is a probe of its own: along an axis of one probe the farther ones are the nearer ones again.
+SCONCE_FN bool b0IsOwnCorner(int corner)
+{
+    return kPublished || (((corner & 1) == 0 || field.gridX > 1u) && ((corner & 2) == 0 || field.gridY > 1u) && ((corner & 4) == 0 || field.gridZ > 1u));
 }
 
 /// Corner of the cell whose probe is nearest to the point in grid units, bits xyz; corners beyond the grid are those within it.
@@ -123,6 +136,11 @@ SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at, vec3 directio
         }
     }
     if (!moved) c.corner = (c.corner + 3) & 7;
+    while (!b0IsOwnCorner(c.corner) && c.tries < kB0Tries)
+    {
+        ++c.tries;
+        c.corner = (c.corner + 3) & 7;
+    }
     c.probe = b0ProbeIndex(c.cell, c.corner);
     return c.tries < kB0Tries;
 }

@@ -17,7 +17,7 @@ struct Candidates
 
 Candidates candidatesAt(ivec2 at, Pixel p, vec3 point, TangentFrame tangents)
 {
-    return Candidates(gridCellOf(point), point, p.normal, p.view, canGather(point, p.normal) ? 0 : kGridCorners);
+    return Candidates(gridCellOf(gridBiased(point, p.normal, p.view)), point, p.normal, p.view, canGather(point, p.normal) ? 0 : kGridCorners);
 }
 
 bool nextCandidate(inout Candidates of, out uint probe, out float weight)

@@ -2,8 +2,17 @@
 //   2017  McGuire et al. 2017, "Real-Time Global Illumination using Precomputed Light Field Probes", as their supplement weighs
 //   2021  Majercik et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", and 2021, "Scaling Probe-Based Real-Time
 //         Dynamic Global Illumination for Production"; and what ours has, of every method the same: a probe that a surface hides has no say
+#include "opponents/baseline.h"
 #include "opponents/grid_cell.glsl"
-const float kGridBias = 0.1; // metres along the normal, and as many towards the viewer (Majercik et al. 2021)
+layout(constant_id = kGridBiasId) const float kGridBias = 0.1; // metres along the normal (Majercik et al. 2021)
+layout(constant_id = kGridBiasViewId) const float kGridBiasView = 0.1; // and towards the viewer
+
+/// Where a point's light is looked up: off the surface, or it would be the surface that hides it. 2017 knew no bias.
+vec3 gridBiased(vec3 point, vec3 normal, vec3 view)
+{
+    if (SCONCE_GRID_WEIGHTS == 2017) return point;
+    return point + (kGridBias * normal + kGridBiasView * view) / field.scale;
+}
 
 /// Chebyshev's bound on what of a probe's light comes as far as a point (McGuire et al. 2017, section 5.2).
 float gridVisibility(uint probe, vec3 fromProbe, float away)
@@ -28,8 +37,7 @@ float gridWeight(GridCell cell, int corner, vec3 point, vec3 normal, vec3 view, 
         float weight = part.x * part.y * part.z * max(0.05, dot(direction, normal)) * gridVisibility(probe, -toProbe, away);
         return max(weight, 0.0002);
     }
-    vec3 biased = point + (kGridBias / field.scale) * (normal + view);
-    vec3 fromProbe = biased - centre;
+    vec3 fromProbe = gridBiased(point, normal, view) - centre;
     float away = max(length(fromProbe), 1e-6);
     part = max(part, 0.001);
     float wrap = 0.5 * dot(direction, normal) + 0.5;

@@ -69,6 +69,23 @@ TEST(SafeFile, SaysWhereItCannotWrite)
     EXPECT_NE(aFolder.error().message.find("folder"), std::string::npos) << aFolder.error().message;
 }
 
+// A file is put in the place of what had its name: of a pipe's, and of /dev/null, which all programs share.
+TEST(SafeFile, LeavesDevicesAndPipesAlone)
+{
+    const TestFolder folder;
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0666), 0);
+    std::filesystem::create_symlink(pipe, folder / "link");
+    for (const char* name : {"pipe", "link"})
+    {
+        const Status refused = writeText(folder / name, "text");
+        ASSERT_FALSE(refused) << name;
+        EXPECT_EQ(refused.error().code, ErrorCode::fileError);
+        EXPECT_NE(refused.error().message.find("pipe"), std::string::npos) << refused.error().message;
+        EXPECT_TRUE(std::filesystem::is_fifo(folder / name)) << name;
+    }
+}
+
 TEST(SafeFile, ReplacesALinkAndNotWhatItPointsTo)
 {
     const TestFolder folder;

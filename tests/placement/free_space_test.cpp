@@ -143,6 +143,17 @@ TEST(FreeSpace, ThinWallSeparatesAndAPointInsideChooses)
     expectBox(spaceOf(scene, {{1, 1, 2}, {5, 1, 2}}), {0, 0, 0}, {6, 3, 4});
 }
 
+// Within half a cell of a wall the nearest free cell may be the one behind it.
+TEST(FreeSpace, APointCloseToAThinWallMeansItsOwnSide)
+{
+    const Scene scene = dividedRoom();
+    for (const float away : {0.002f, 0.01f, 0.03f})
+    {
+        expectBox(spaceOf(scene, {{4.0f - away, 1, 2}}), {0, 0, 0}, {4, 3, 4});
+        expectBox(spaceOf(scene, {{4.0f + away, 1, 2}}), {4, 0, 0}, {6, 3, 4});
+    }
+}
+
 // A box is all free space in it, wherever the camera is.
 TEST(FreeSpace, ABoxBesideTheCamerasRoomIsFilled)
 {

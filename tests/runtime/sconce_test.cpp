@@ -143,6 +143,64 @@ TEST_F(Door, RecordsOfOneTracerDoNotDisturbEachOther)
     }
 }
 
+TEST_F(Door, ABakeIsAsItsDescSays)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    const auto scene = makeBuiltinScene("cornell-glossy");
+    ASSERT_TRUE(scene);
+    const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}};
+    BakeDesc desc;
+    desc.resolution = 64;
+    desc.bounces = 0;
+    desc.compact = true;
+    desc.surfaceTexels = 26;
+    const std::string at = *folder / "asked.sconce";
+    ASSERT_TRUE(bakeLightField(*device, *scene, probes, desc, at));
+    auto field = loadField(at);
+    ASSERT_TRUE(field) << field.error().message;
+    EXPECT_EQ(field->info.surfaceSize, 26u);
+    EXPECT_TRUE(inBlocks(field->info));
+    desc.compact = false;
+    desc.surfaceTexels = 0;
+    ASSERT_TRUE(bakeLightField(*device, *scene, probes, desc, at));
+    field = loadField(at);
+    ASSERT_TRUE(field) << field.error().message;
+    EXPECT_EQ(field->info.surfaceSize, 0u);
+    EXPECT_FALSE(inBlocks(field->info));
+    desc.surfaceTexels = 27;
+    const Status refused = bakeLightField(*device, *scene, probes, desc, at);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::badArgument);
+    EXPECT_NE(refused.error().message.find("surfaceTexels"), std::string::npos) << refused.error().message;
+}
+
+// A host's own scene: what is wrong with it is said before anything reads it.
+TEST_F(Door, ASceneThatIsNotWholeIsRefused)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    auto scene = makeBuiltinScene("cornell-glossy");
+    ASSERT_TRUE(scene);
+    scene->triangles[3].x = 1u << 30;
+    const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}};
+    for (const char* effects : {"auto", "glossy"})
+    {
+        BakeDesc desc;
+        desc.effects = effects;
+        const Status refused = bakeLightField(*device, *scene, probes, desc, *folder / "none.sconce");
+        ASSERT_FALSE(refused) << effects;
+        EXPECT_EQ(refused.error().code, ErrorCode::badInput) << refused.error().message;
+        EXPECT_NE(refused.error().message.find("riangle 3"), std::string::npos) << refused.error().message;
+    }
+    BakeReport report;
+    const auto refused = bakeLightField(device->gpu(), *scene, probes, BakeSettings{}, {}, report);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::badInput) << refused.error().message;
+}
+
 // A lamp and the sky, each of which a host switches: in the command buffer in which it is recorded, at the rays that are traced after it.
 TEST_F(Door, LightGroupsAreSwitchedInTheFrameThatRecordsIt)
 {

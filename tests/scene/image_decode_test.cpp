@@ -40,6 +40,32 @@ TEST(ImageDecode, EveryTruncationIsRefused)
     for (size_t length = 0; length + 8 < end; ++length) EXPECT_FALSE(decodeImage(asBytes(png.substr(0, length)), "cut").ok()) << length;
 }
 
+/// Grey, 8 x 8, darker to the right and downwards.
+std::string greyJpeg()
+{
+    const std::string hex =
+        "ffd8ffe000104a46494600010100000100010000ffdb0043001b12141714111b1716171e1c1b2028422b28252528513a3d3042605565645f555d5b6a"
+        "7899816a7190735b5d85b586909ea3abadab6780bcc9baa6c799a8aba4ffc0000b080008000801011100ffc400140001000000000000000000000000"
+        "00000003ffc40017100003010000000000000000000000000000030461ffda0008010100003f0066d3a7ffd9";
+    std::string bytes;
+    for (size_t i = 0; i < hex.size(); i += 2) bytes += char(std::stoi(hex.substr(i, 2), nullptr, 16));
+    return bytes;
+}
+
+// Cameras and old exporters leave bytes between markers; a file that ends early is another thing.
+TEST(ImageDecode, BytesBetweenAJpegsMarkersDoNoHarm)
+{
+    const std::string whole = greyJpeg();
+    const auto image = decodeImage(asBytes(whole), "grey");
+    ASSERT_TRUE(image.ok()) << image.error().message;
+    std::string padded = whole;
+    padded.insert(20, "\x01\x02"); // after the first header
+    const auto same = decodeImage(asBytes(padded), "grey");
+    ASSERT_TRUE(same.ok()) << same.error().message;
+    EXPECT_EQ(same->rgba, image->rgba);
+    EXPECT_FALSE(decodeImage(asBytes(whole.substr(0, whole.size() - 6)), "cut").ok());
+}
+
 TEST(ImageDecode, OtherFormatsAreNamed)
 {
     const auto fails = [](const std::string& bytes, const std::string& part)

@@ -85,6 +85,18 @@ TEST(SceneGeometry, BoundsOfNothingAreEmpty)
     EXPECT_EQ(oneTriangle().bounds().size(), vec3(1, 1, 0));
 }
 
+// A host's pool of vertices may hold others' anywhere.
+TEST(SceneGeometry, BoundsAreOfTrianglesAlone)
+{
+    Scene scene = oneTriangle();
+    const Bounds before = scene.bounds();
+    scene.positions.push_back(vec3(1e5f));
+    EXPECT_EQ(scene.bounds().low, before.low);
+    EXPECT_EQ(scene.bounds().high, before.high);
+    scene.triangles[0].x = 1u << 30; // which validate() says
+    EXPECT_EQ(scene.bounds().high.z, before.high.z);
+}
+
 TEST(EvaluateMaterial, TexelCentresAreExact)
 {
     for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror})

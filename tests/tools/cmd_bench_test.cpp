@@ -127,18 +127,23 @@ TEST(BenchCommand, AWorsenedFigureFailsTheCheckAndIsNamed)
 {
     const TestFolder folder;
     const std::string file = folder / "baseline.json";
-    ASSERT_EQ(sconceCommand({"bench",     "cornell", "--baseline", file,     "--probes",       "2", "--resolution", "64",
-                             "--size",    "32x18",   "--rays",     "500",    "--frames",       "1", "--spp",        "4",
-                             "--bounces", "0",       "--knobs",    "ranked", "--surface-rays", "16"})
-                  .exit,
-              0);
+    ASSERT_EQ(
+        sconceCommand({"bench",          "cornell", "--baseline", file, "--probes",    "2",  "--resolution", "64", "--size",  "32x18",
+                       "--rays",         "500",     "--frames",   "1",  "--spp",       "4",  "--bounces",    "0",  "--knobs", "ranked",
+                       "--surface-rays", "16",      "--seed",     "7",  "--roughness", "0.4"})
+            .exit,
+        0);
     json guard = json::parse(readText(file));
     ASSERT_EQ(guard["scenes"][0]["points"].size(), 5u); // ours, its three others of the knob, and B0+
+    EXPECT_EQ(guard["scenes"][0]["options"]["seed"], 7);
+    EXPECT_FLOAT_EQ(guard["scenes"][0]["options"]["roughness"].get<float>(), 0.4f);
     json& reads = guard["scenes"][0]["points"][0]["reads"];
-    reads = 0.5 * reads.get<double>();
+    const double measured = reads;
+    reads = 0.5 * measured;
     writeText(file, guard.dump());
-    const CommandResult worse = sconceCommand({"bench", "--check", file});
+    const CommandResult worse = sconceCommand({"bench", "--check", file, "--json"});
     EXPECT_EQ(worse.exit, 1);
+    EXPECT_EQ(json::parse(worse.out)["points"][0]["reads"].get<double>(), measured) << "of the same rays, by the guard's own seed";
     EXPECT_NE(worse.err.find("cornell, ours/default: reads is "), std::string::npos) << worse.err;
     EXPECT_EQ(worse.err.find("wrong_rays is"), std::string::npos) << worse.err;
 }

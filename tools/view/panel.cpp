@@ -9,6 +9,8 @@
 #include <imgui/backends/imgui_impl_vulkan.h>
 #include <imgui/imgui.h>
 
+#include "tools/light_group_options.h"
+
 namespace sconce::tools
 {
 
@@ -334,14 +336,18 @@ void Panel::buildLight(ViewState& state, const Session& session)
     if (session.sunMoves())
     {
         if (!sunRead)
-            for (const Light& light : session.litScene().lights)
-                if (light.type == LightType::directional) sunDirection = light.direction, sunIrradiance = light.intensity;
+        {
+            const std::vector<Light>& lights = session.litScene().lights;
+            const auto sun = std::ranges::find(lights, LightType::directional, &Light::type);
+            if (sun != lights.end()) sunDirection = sun->direction, sunIrradiance = sun->intensity;
+        }
         sunRead = true;
         // A script's, or the panel's own.
-        if (state.light.sun && state.light.sun->direction != sunTaken)
+        if (const auto& sun = state.light.sun; sun && (sun->direction != sunTaken.direction || sun->irradiance != sunTaken.irradiance))
         {
-            sunTaken = sunDirection = state.light.sun->direction;
-            if (state.light.sun->irradiance) sunIrradiance = *state.light.sun->irradiance;
+            sunTaken = *sun;
+            sunDirection = sun->direction;
+            if (sun->irradiance) sunIrradiance = *sun->irradiance;
         }
         float height = glm::degrees(std::asin(std::clamp(-sunDirection.y, -1.0f, 1.0f))),
               around = glm::degrees(std::atan2(sunDirection.x, sunDirection.z));
@@ -357,6 +363,15 @@ void Panel::buildLight(ViewState& state, const Session& session)
         // Its shadow map is made anew: not while it is dragged.
         if (released) state.light.sun = SunPlace{glm::normalize(sunDirection), glm::max(sunIrradiance, vec3(0.0f))};
         if (!session.settled()) ImGui::TextUnformatted("light settles ...");
+    }
+    if (state.light.dims != dimsTaken) // a script's, or the panel's own
+    {
+        dimsTaken = state.light.dims;
+        weights.clear();
+        std::vector<LightGroupDesc> groups;
+        for (const std::string& group : session.groups()) groups.push_back({group, {}});
+        if (const auto taken = weightsOf(dimsTaken, groups)) // else the session says what is wrong
+            for (size_t g = 0; g < groups.size(); ++g) weights[groups[g].name] = (*taken)[g];
     }
     for (const std::string& group : session.groups())
     {

@@ -77,7 +77,8 @@ private:
     std::map<std::string, double> edited; // numbers of knobs while they are dragged
     std::map<std::string, vec3> weights;  // of light groups
     vec3 sunDirection{0.0f, -1.0f, 0.0f}, sunIrradiance{1.0f};
-    vec3 sunTaken{0.0f}; // of the state, that the two above have followed
+    SunPlace sunTaken;                  // of the state, that the two above have followed
+    std::vector<std::string> dimsTaken; // that the weights have
     bool sunRead = false;
 };
 

@@ -165,6 +165,7 @@ Status Session::apply(const ViewKnobs& knobs, const LightChoice& light, uint32_t
         if (!lighting) return lighting.error();
         if (light.sun)
         {
+            if (const std::string fault = heldSunFault(lighting->fixed); !fault.empty()) return Error{ErrorCode::badArgument, fault + "."};
             turnSun(lighting->lights, *light.sun);
             lighting->moves = true;
             scene.lights = lighting->fixed;

@@ -9,7 +9,8 @@ import { hideTooltip, showTooltip } from "./tooltip";
 
 type Probe = NonNullable<ProbeSet["probes"]>[number];
 type Side = "above" | "front" | "side";
-const kAxes: Record<Side, [0 | 1 | 2, 0 | 1 | 2, 0 | 1 | 2]> = { above: [0, 2, 1], front: [0, 1, 2], side: [2, 1, 0] }; // right, down the page, towards the eye
+/** Axes to the right, down the page and towards the eye, and which way the last runs: with z to the right and y up, x runs away. */
+const kAxes: Record<Side, [0 | 1 | 2, 0 | 1 | 2, 0 | 1 | 2, 1 | -1]> = { above: [0, 2, 1, 1], front: [0, 1, 2, 1], side: [2, 1, 0, -1] };
 const kNames = ["x", "y", "z"];
 const kReach = 14; // CSS pixels
 
@@ -30,7 +31,7 @@ function plan(
     reasons: string[],
     chosen: (probe: number) => void,
 ): { element: HTMLElement; mark(probe: number): void } {
-    const [right, down, toward] = kAxes[side];
+    const [right, down, toward, sense] = kAxes[side];
     const probes = set.probes ?? [];
     const low = [...(scene.bounds?.min ?? [Infinity, Infinity, Infinity])];
     const high = [...(scene.bounds?.max ?? [-Infinity, -Infinity, -Infinity])];
@@ -65,7 +66,8 @@ function plan(
     );
     const dots = probes.map((probe, index) => {
         const [x, y] = place(probe.position);
-        const near = (((probe.position[toward] as number) - (low[toward] as number)) / span(toward)) * 1.05 + 0.55; // nearer to the eye is larger
+        const farthest = (sense > 0 ? low[toward] : high[toward]) as number;
+        const near = ((sense * ((probe.position[toward] as number) - farthest)) / span(toward)) * 1.05 + 0.55; // nearer to the eye is larger
         return svg("circle", {
             cx: x,
             cy: y,
@@ -75,7 +77,7 @@ function plan(
         });
     });
     // The nearest first: of probes over each other, the smaller ones show as rings within the larger.
-    const order = dots.map((_, index) => index).sort((a, b) => (probes[b]?.position[toward] ?? 0) - (probes[a]?.position[toward] ?? 0));
+    const order = dots.map((_, index) => index).sort((a, b) => sense * ((probes[b]?.position[toward] ?? 0) - (probes[a]?.position[toward] ?? 0)));
     drawing.append(...order.map((index) => dots[index] as SVGCircleElement));
 
     let current = -1;

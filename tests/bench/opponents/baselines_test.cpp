@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
 #include "bench/opponents/baselines.h"
 #include "runtime/field/field_space.h"
 #include "runtime/field/light_field.h"
 #include "runtime/field/tracer_cpu.h"
+#include "scene/mesh_builder.h"
 #include "tests/support/cornell_field.h"
 #include "tests/support/device.h"
 #include "tests/support/pillared_room.h"
@@ -108,6 +110,68 @@ TEST(BaselineB0Plus, LosesFewRaysWhateverTheLowFactor)
     EXPECT_GE(fine.good, 91.0);
     EXPECT_NEAR(fine.hit, coarse.hit, 0.1);
     EXPECT_NEAR(fine.good, coarse.good, 0.5);
+}
+
+/// A room of 2 m with a box of 0.7 m in its middle, alike on all sides.
+Scene roomAboutABox()
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t wall = mesh.material("wall", vec3(0.5f));
+    BlockSolid room;
+    room.fill(vec3(-1.1f), vec3(1.1f), wall);
+    room.carve(vec3(-1.0f), vec3(1.0f));
+    room.fill(vec3(-0.35f), vec3(0.35f), wall);
+    room.addTo(mesh);
+    return scene;
+}
+
+// Cells once went on beyond the last probes, where the corners that are there were asked again for those that aren't: of a grid of 2x2x2
+// points beyond the farther ones had one probe.
+TEST(BaselineB0Plus, BeyondTheFarProbesOfAGridAreAsManyAsBeyondTheNear)
+{
+    const Scene scene = roomAboutABox();
+    const RayScene truth = std::move(*RayScene::create(scene));
+    const auto field = baselineField(gridByRays(truth, glm::ivec3(2), vec3(-0.5f), vec3(1.0f), 128), Baseline::b0Plus);
+    ASSERT_TRUE(field) << field.error().message;
+    constexpr uint32_t kRays = 20000;
+    std::vector<gpu::Ray> near, far; // the same seen in a mirror of all axes
+    for (uint32_t i = 0; i < kRays; ++i)
+    {
+        Random random(8, i);
+        const auto low = [&] { return -0.95f + 0.4f * random.uniform(); };
+        const vec3 origin(low(), low(), low()), direction = random.direction();
+        near.push_back({origin, direction, vec3(0.0f)});
+        far.push_back({-origin, -direction, vec3(0.0f)});
+    }
+    const auto unknown = [&](const std::vector<gpu::Ray>& rays)
+    {
+        std::vector<gpu::RayHit> hits(rays.size());
+        traceBaselineOnCpu(*field, Baseline::b0Plus, rays, hits);
+        return double(std::ranges::count(hits, uint32_t(2), &gpu::RayHit::status)) / kRays;
+    };
+    EXPECT_NEAR(unknown(near), unknown(far), 0.002);
+}
+
+// Along an axis of one probe no corner is asked twice.
+TEST(BaselineB0Plus, AFlatGridsProbesAreAskedOnce)
+{
+    const Scene scene = roomAboutABox();
+    const RayScene truth = std::move(*RayScene::create(scene));
+    const auto field = baselineField(gridByRays(truth, glm::ivec3(2, 1, 2), vec3(-0.5f, 0.6f, -0.5f), vec3(1.0f), 128), Baseline::b0Plus);
+    ASSERT_TRUE(field) << field.error().message;
+    std::vector<gpu::Ray> rays; // into the shadow that the box has from all of them
+    for (uint32_t i = 0; i < 2000; ++i)
+    {
+        Random random(9, i);
+        rays.push_back(
+            {vec3(0.0f, -0.4f, 0.0f), glm::normalize(vec3(random.uniform() - 0.5f, -2.0f, random.uniform() - 0.5f)), vec3(0.0f)});
+    }
+    std::vector<gpu::RayHit> hits(rays.size());
+    traceBaselineOnCpu(*field, Baseline::b0Plus, rays, hits);
+    uint32_t most = 0;
+    for (const gpu::RayHit& hit : hits) most = std::max(most, uint32_t(hit.handoffs) + 1);
+    EXPECT_EQ(most, 4u);
 }
 
 /// The Cornell box as each opponent reads it: an octahedral grid with an octree, and cube faces.

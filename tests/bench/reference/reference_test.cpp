@@ -157,6 +157,24 @@ TEST(Reference, SquareEmitterMatchesThePolygonFormula)
     }
 }
 
+// A wall beside the lamp throws its light on the floor: not straight.
+TEST(Reference, StraightLightIsWithoutWhatSurfacesThrow)
+{
+    Scene scene = floorUnder(0.5f);
+    scene.materials.push_back(plain(vec3(0.0f), 1.0f, 0.0f, vec3(10.0f)));
+    scene.materials.push_back(plain(vec3(0.9f), 1.0f));
+    addQuad(scene, {0.2f, 2, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}, 1);
+    addQuad(scene, {-0.6f, 0.5f, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, 2);
+    ReferenceSettings settings = view({0, 1, 1}, vec3(0.0f), 16, 256, 1e-4f);
+    const double irradiance = polygonIrradiance(10.0, {{-0.3, 2, -0.5}, {0.7, 2, -0.5}, {0.7, 2, 0.5}, {-0.3, 2, 0.5}}, {0, 1, 0});
+    const double expected = test::RoughModel{0.5}.diffuse(0.97, std::sqrt(0.5)) * irradiance;
+    settings.bounces = 4;
+    EXPECT_GT(meanOf(render(scene, settings).images, "diffuse_indirect").value, 1.02 * expected);
+    settings.straight = true;
+    const test::Mean straight = meanOf(render(scene, settings).images, "diffuse_indirect");
+    EXPECT_NEAR(straight.value, expected, 4.0 * straight.error + 1e-3 * expected);
+}
+
 // Two squares at one place, as exporters leave them for two sides: one of them is seen, and gives the light of one.
 TEST(Reference, ADoubledLampIsOneLamp)
 {

@@ -436,6 +436,10 @@ test("probes say where they are and why", async () => {
     assert.match(await page.locator(".plan-cell").nth(1).innerText(), /54 probes · grid · 6 × 3 × 3 · /);
     await choose("Seen from", "the front");
     assert.equal(await page.locator("svg.plan:not(.ground)").first().locator("circle").count(), 54);
+    // With z to the right and y up one looks along x: what has less of it is nearer, and larger.
+    await choose("Seen from", "the side");
+    const radius = async (probe) => Number(await page.locator("svg.plan:not(.ground)").nth(1).locator(`circle[data-probe='${probe}']`).getAttribute("r"));
+    assert.ok((await radius(0)) > 1.5 * (await radius(5)), "the grid's points count along x first");
     noFaults();
 });
 

@@ -246,7 +246,16 @@ TEST(Command, FilesThatCannotBeReadOrWrittenExitWith5)
     expectSentence(sconceCommand({"verify", folder / "none.sconce"}), 5, "none.sconce");
     expectSentence(sconceCommand({"bake", "cornell", "--probes", folder / "none.json", "-o", folder / "x.sconce", "-q"}), 5, "none.json");
     expectSentence(sconceCommand({"compare", folder / "none.exr", folder / "none.exr"}), 5, "none.exr");
-    expectSentence(sconceCommand({"place", "cornell", "--grid", "1x1x1", "-o", folder / "no_folder/p.json", "-q"}), 5, "no_folder");
+    // Before the work of hours, not after it.
+    for (const char* output : {"-o", "--png"})
+    {
+        std::vector<std::string> line{"reference", "cornell", "--size", "1920x1080",           "--spp",
+                                      "65536",     "-q",      output,   folder / "no_folder/a"};
+        if (std::string(output) == "--png") line.insert(line.end(), {"-o", folder / "a.exr"});
+        expectSentence(sconceCommand(line), 5, "no_folder");
+    }
+    expectSentence(sconceCommand({"place", "cornell", "--count", "2000", "-o", folder / "no_folder/p.json", "-q"}), 5, "no_folder");
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 TEST(Command, ScenesListsTheBuiltInOnes)
@@ -468,6 +477,16 @@ TEST(Command, ProbesAndPixelsAreExplained)
     EXPECT_FALSE(pixel.at("glossy").at("way").empty());
     EXPECT_FALSE(pixel.at("advice").empty());
     EXPECT_GT(std::filesystem::file_size(folder / "way.png"), 100u);
+    // Of all surfaces as one of another roughness: planned and drawn by it.
+    ASSERT_EQ(
+        with({"render", "cornell-glossy", "--field", folder / "f.sconce", "--roughness", "0.9", "-o", folder / "rough.exr", "-q"}).exit, 0);
+    const auto rough = sconce::readExr(folder / "rough.exr");
+    ASSERT_TRUE(rough) << rough.error().message;
+    const json blunt =
+        jsonOf(with({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "40,6", "--spp", "4", "--roughness", "0.9", "--json"}));
+    EXPECT_FLOAT_EQ(blunt.at("roughness").get<float>(), 0.9f);
+    for (const size_t c : {0, 1, 2})
+        EXPECT_EQ(blunt.at("glossy").at("frame")[c].get<float>(), rough->find("glossy_indirect")->pixels[3 * (6 * 64 + 40) + c]);
     expectSentence(with({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "64,0"}), 2, "63,35");
     expectSentence(with({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "1.5,0"}), 2, "1.5");
     expectSentence(sconceCommand({"explain", folder / "f.sconce", "cornell-glossy", "--pixel", "1,1", "--size", "8x8", "--eye", "0,1,3",
@@ -770,6 +789,32 @@ TEST(Command, LightsMoveAfterTheBake)
         expectSentence(sconceCommand(more), exit, part);
     };
     refused({"--field", folder / "other.sconce", "--sun-path", folder / "day.csv"}, 2, "--live-links");
+    // A sun that a group dims stays where it is: another beside it would be two.
+    ASSERT_EQ(sconceCommand({"bake",
+                             "cornell-glossy",
+                             "--probes",
+                             folder / "p.json",
+                             "--sun",
+                             "0,-1,0",
+                             "--group",
+                             "sun",
+                             "--live-links",
+                             "8",
+                             "--resolution",
+                             "64",
+                             "--surface-texels",
+                             "26",
+                             "--surface-rays",
+                             "16",
+                             "--bounces",
+                             "0",
+                             "-o",
+                             folder / "held.sconce",
+                             "-q"})
+                  .exit,
+              0);
+    refused({"--field", folder / "held.sconce", "--sun", "0,-1,0", "--sun-path", folder / "day.csv"}, 2, "light group");
+    expectSentence(sconceCommand({"relight", folder / "held.sconce", "-o", folder / "x.sconce", "--sun", "1,-1,0"}), 2, "group 'sun'");
     writeText(folder / "bad.csv", "time,x,y,z\n1,0,-1,0\n1,0,-1,1\n");
     refused({"--field", folder / "f.sconce", "--lights", one, "--sun-path", folder / "bad.csv"}, 3, "line 3");
     refused({"--field", folder / "f.sconce", "--lights", lights("bad.json", R"({"lights":[{"type":"moon"}]})")}, 3, "'moon'");

@@ -31,7 +31,7 @@ double colourOf(int corner)
 }
 
 /// McGuire et al. 2017, supplement.
-double weight2017(dvec3 x, dvec3 n, dvec3, dvec3 centre, double trilinear)
+double weight2017(dvec3 x, dvec3 n, dvec3 centre, double trilinear)
 {
     const double d = glm::distance(x, centre);
     double w = trilinear * std::max(0.05, glm::dot((centre - x) / d, n));
@@ -40,9 +40,8 @@ double weight2017(dvec3 x, dvec3 n, dvec3, dvec3 centre, double trilinear)
 }
 
 /// Majercik et al. 2019, section 4, with the bias and the crushed tail of 2021.
-double weight2021(dvec3 x, dvec3 n, dvec3 view, dvec3 centre, double trilinear)
+double weight2021(dvec3 x, dvec3 biased, dvec3 n, dvec3 centre, double trilinear)
 {
-    const dvec3 biased = x + 0.1 * (n + view);
     const double d = glm::distance(biased, centre), wrap = 0.5 * (glm::dot(glm::normalize(centre - x), n) + 1.0);
     double w = wrap * wrap + 0.2;
     if (d > kMean) w *= std::max(std::pow(kSpread / (kSpread + (d - kMean) * (d - kMean)), 3.0), 0.05);
@@ -124,18 +123,24 @@ TEST_F(GridLightTest, EachPixelIsThePapersBlendOfEightCorners)
         field->irradiance[i] = text.packRadiance(vec3(float(colourOf(int(i / (2 * gpu::kIrradianceSize * gpu::kIrradianceSize))))));
         field->irradiance[i + 1] = text.realToHalf(float(kMean / unit)) | (text.realToHalf(float(kSpread / (unit * unit))) << 16);
     }
-    for (const Baseline baseline : {Baseline::b0, Baseline::b0Plus})
+    struct Look
     {
-        settings.lightShaders = lightPasses(baseline);
+        Baseline baseline;
+        float bias, view; // metres along the normal, times as far to the viewer
+    };
+    for (const Look& look : {Look{Baseline::b0, 0.1f, 1.0f}, {Baseline::b0Plus, 0.1f, 1.0f}, {Baseline::b0Plus, 0.05f, 4.0f}})
+    {
+        const Baseline baseline = look.baseline;
+        settings.lightShaders = lightPasses(baseline, look.bias, look.view);
         lookAround(*field, baselineName(baseline),
                    [&](dvec3 point, dvec3 n, dvec3 view)
                    {
                        double sum = 0.0, weights = 0.0;
                        for (int i = 0; i < 8; ++i)
                        {
-                           const double part = trilinear(point, i, baseline == Baseline::b0 ? 0.0 : 0.001);
-                           const double w =
-                               (baseline == Baseline::b0 ? weight2017 : weight2021)(point, n, view, dvec3(probes[size_t(i)]), part);
+                           const dvec3 centre(probes[size_t(i)]), biased = point + double(look.bias) * (n + double(look.view) * view);
+                           const double w = baseline == Baseline::b0 ? weight2017(point, n, centre, trilinear(point, i, 0.0))
+                                                                     : weight2021(point, biased, n, centre, trilinear(biased, i, 0.001));
                            sum += w * colourOf(i), weights += w;
                        }
                        return sum / weights;

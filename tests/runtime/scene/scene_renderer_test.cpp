@@ -713,6 +713,39 @@ TEST_F(SceneRendererTest, AKnobBeyondItsRangeIsRefusedWithASentence)
     EXPECT_EQ(refusal([](RenderSettings& s) { s.raysBelow = NAN; }), "raysBelow is nan; give 0 to 2 roughness");
 }
 
+// Of 4 km the near plane was 0.4 m.
+TEST_F(SceneRendererTest, AWallCloseToTheEyeIsSeenInALargeScene)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    const uint32_t wall = mesh.material("wall", vec3(0.5f));
+    mesh.quad({-2000, -2, 2000}, {2000, -2, 2000}, {2000, -2, -2000}, {-2000, -2, -2000}, wall);
+    mesh.quad({-1, -1, -0.05f}, {1, -1, -0.05f}, {1, 1, -0.05f}, {-1, 1, -0.05f}, wall);
+    scene.cameras.push_back({"close", vec3(0.0f), {0, 0, -1}, {0, 1, 0}, 1.0f});
+    const auto frame = draw(scene, std::vector<vec3>{vec3(0.0f, 1.0f, 3.0f)}, settingsFor(), 64);
+    ASSERT_TRUE(frame) << frame.error().message;
+    for (const float depth : frame->depth) ASSERT_NEAR(depth, 0.05f, 1e-3f);
+}
+
+TEST_F(SceneRendererTest, MoreImagesThanADeviceBindsAreASentence)
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    for (int i = 0; i < 3; ++i)
+    {
+        const uint32_t material = mesh.material("painted", vec3(0.5f));
+        scene.images.push_back({"paint", 1, 1, {255, 255, 255, 255}});
+        scene.materials[material].baseColorTexture.image = i;
+        mesh.quad({0, i, 0}, {1, i, 0}, {1, i, 1}, {0, i, 1}, material);
+    }
+    ValidatedDevice owner;
+    owner.gpu().properties.limits.maxImageArrayLayers = 2;
+    const auto made = DeviceScene::create(owner.gpu(), scene, fieldSpace(scene.bounds()));
+    ASSERT_FALSE(made);
+    for (const char* part : {"3 images as colour", "binds 2"})
+        EXPECT_NE(made.error().message.find(part), std::string::npos) << made.error().message;
+}
+
 TEST_F(SceneRendererTest, EmptyFrameIsRefusedWithASentence)
 {
     RenderSettings settings = settingsFor();

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/field/light_field.h"
+#include "runtime/sconce.h"
 #include "runtime/vulkan/nan_scan.h"
 #include "scene/builtin_scenes.h"
 #include "tests/properties/frames/frame_test.h"
@@ -62,6 +63,53 @@ TEST_F(NanScanTest, NamesPassBufferAndTheFirstBadWord)
     EXPECT_EQ(sentenceOf(words, {.first = 138, .count = 500}), "");
     EXPECT_EQ(sentenceOf(words, {.stride = 2, .mask = 0}), "") << "integers are left alone";
     EXPECT_EQ(sentenceOf(std::vector<uint32_t>(8, kOne), {}), "") << "a finding doesn't stay for the next submit";
+}
+
+// A host submits what the library recorded, and asks once it is done.
+TEST_F(NanScanTest, WhatAHostSubmitsIsToldWhenItAsks)
+{
+    const Variable scans(kVariable, "1");
+    const auto device = Device::create(scanning->host());
+    ASSERT_TRUE(device) << device.error().message;
+    Gpu& own = device->gpu();
+    const uint32_t words[] = {kOne, kOne, kNan};
+    auto buffer = own.makeBufferWith<uint32_t>(words, 0, "planted words");
+    ASSERT_TRUE(buffer);
+    EXPECT_TRUE(device->nanFindings()) << "nothing has run";
+    Handle<VkCommandPool, &VulkanFunctions::DestroyCommandPool> pool;
+    VkCommandPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    poolInfo.queueFamilyIndex = own.host.queueFamily;
+    ASSERT_EQ(pool.make(own, own.vk.CreateCommandPool, own.host.device, &poolInfo, own.host.allocationCallbacks), VK_SUCCESS);
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = pool.get();
+    allocate.commandBufferCount = 1;
+    VkCommandBuffer cmd = VK_NULL_HANDLE;
+    ASSERT_EQ(own.vk.AllocateCommandBuffers(own.host.device, &allocate, &cmd), VK_SUCCESS);
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    ASSERT_EQ(own.vk.BeginCommandBuffer(cmd, &begin), VK_SUCCESS);
+    NanScan::Words how;
+    how.count = 3;
+    scanBuffer(own, cmd, "planting", *buffer, how);
+    ASSERT_EQ(own.vk.EndCommandBuffer(cmd), VK_SUCCESS);
+    Handle<VkFence, &VulkanFunctions::DestroyFence> fence;
+    VkFenceCreateInfo fenceInfo{};
+    fenceInfo.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+    ASSERT_EQ(fence.make(own, own.vk.CreateFence, own.host.device, &fenceInfo, own.host.allocationCallbacks), VK_SUCCESS);
+    VkSubmitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &cmd;
+    const VkFence done = fence.get();
+    ASSERT_EQ(own.vk.QueueSubmit(own.host.queue, 1, &info, done), VK_SUCCESS);
+    ASSERT_EQ(own.vk.WaitForFences(own.host.device, 1, &done, VK_TRUE, UINT64_MAX), VK_SUCCESS);
+    const Status found = device->nanFindings();
+    ASSERT_FALSE(found);
+    for (const char* part : {"'planting'", "'planted words'", "word 2"})
+        EXPECT_NE(found.error().message.find(part), std::string::npos) << found.error().message;
+    EXPECT_TRUE(device->nanFindings()) << "told once";
 }
 
 TEST_F(NanScanTest, KnowsEveryFormat)
