@@ -54,12 +54,6 @@ SCONCE_FN ivec3 b0Cell(vec3 p)
                  int(clamp(floor(g.z), real(0.0), b0LastCell(field.gridZ))));
 }
 
-/// Whether a corner is a probe of its own: along an axis of one probe the farther ones are the nearer ones again.
-SCONCE_FN bool b0IsOwnCorner(int corner)
-{
-    return kPublished || (((corner & 1) == 0 || field.gridX > 1u) && ((corner & 2) == 0 || field.gridY > 1u) && ((corner & 4) == 0 || field.gridZ > 1u));
-}
-
 /// Corner of the cell whose probe is nearest to the point in grid units, bits xyz; corners beyond the grid are those within it.
 SCONCE_FN int b0NearestCorner(vec3 p, ivec3 cell)
 {
@@ -135,12 +129,8 @@ SCONCE_FN bool nextOfGrid(SCONCE_INOUT(BaselineChoice) c, vec3 at, vec3 directio
             c.tries = 0;
         }
     }
+    // Along an axis of one probe corners are asked twice, the second time from where the ray has come to: left out, more rays stay unresolved.
     if (!moved) c.corner = (c.corner + 3) & 7;
-    while (!b0IsOwnCorner(c.corner) && c.tries < kB0Tries)
-    {
-        ++c.tries;
-        c.corner = (c.corner + 3) & 7;
-    }
     c.probe = b0ProbeIndex(c.cell, c.corner);
     return c.tries < kB0Tries;
 }

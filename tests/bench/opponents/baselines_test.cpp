@@ -153,27 +153,6 @@ TEST(BaselineB0Plus, BeyondTheFarProbesOfAGridAreAsManyAsBeyondTheNear)
     EXPECT_NEAR(unknown(near), unknown(far), 0.002);
 }
 
-// Along an axis of one probe no corner is asked twice.
-TEST(BaselineB0Plus, AFlatGridsProbesAreAskedOnce)
-{
-    const Scene scene = roomAboutABox();
-    const RayScene truth = std::move(*RayScene::create(scene));
-    const auto field = baselineField(gridByRays(truth, glm::ivec3(2, 1, 2), vec3(-0.5f, 0.6f, -0.5f), vec3(1.0f), 128), Baseline::b0Plus);
-    ASSERT_TRUE(field) << field.error().message;
-    std::vector<gpu::Ray> rays; // into the shadow that the box has from all of them
-    for (uint32_t i = 0; i < 2000; ++i)
-    {
-        Random random(9, i);
-        rays.push_back(
-            {vec3(0.0f, -0.4f, 0.0f), glm::normalize(vec3(random.uniform() - 0.5f, -2.0f, random.uniform() - 0.5f)), vec3(0.0f)});
-    }
-    std::vector<gpu::RayHit> hits(rays.size());
-    traceBaselineOnCpu(*field, Baseline::b0Plus, rays, hits);
-    uint32_t most = 0;
-    for (const gpu::RayHit& hit : hits) most = std::max(most, uint32_t(hit.handoffs) + 1);
-    EXPECT_EQ(most, 4u);
-}
-
 /// The Cornell box as each opponent reads it: an octahedral grid with an octree, and cube faces.
 struct CornellFields
 {
