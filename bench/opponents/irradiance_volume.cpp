@@ -30,7 +30,7 @@ constexpr uint32_t kMoves = 32;            // at most; each is one of what ships
 constexpr float kFarthestSeen = 1.5f;      // of the diagonal between neighbours: distances beyond are the same
 constexpr float kDistanceExponent = 50.0f; // of the cosine that distances are averaged by
 // Of all probes, and of one: DDGI's blending by 0.97 of what was before is a mean over some (1 + 0.97) / (1 - 0.97) frames of 256 rays.
-constexpr uint32_t kRaysOfAll = 1u << 26, kFewestRays = 1024, kMostRays = 16384;
+constexpr uint32_t kRaysOfAll = 1u << 24, kFewestRays = 1024, kMostRays = 16384;
 constexpr float kBackShare = 0.2f; // of its distance that a back face counts as, so that probes in solids see little
 constexpr size_t kBatch = 64;      // probes between two reports
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # How light follows a lamp of hall that is switched on: live light, with the whole field and a sixteenth of its probes a frame, beside what an irradiance
-# volume of the same rays leaves after blending (Majercik et al. 2021, hysteresis 0.97, gamma 1 and 5). Prints bench/results/light_response.json.
+# volume of the same rays leaves after blending (Majercik et al. 2021, hysteresis 0.97, gamma 1 and 5, and with changes detected as its SDK does). Prints bench/results/light_response.json.
 # Environment: SCONCE, RESPONSE=the programs, built when not given, COUNT=probes [32], RESOLUTION=texels [192], LINKS=live links a texel [16],
 # LAMP=its place [10,5,0], FRAMES=that are followed [300], OUT=folder, whose field is kept [out/response].
 set -euo pipefail

@@ -1,5 +1,7 @@
 #include "bench/race/blended_light.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "runtime/field/tracer_cpu.h"
 #include "shaders/shared/bake_passes.h"
@@ -70,8 +72,17 @@ void BlendedLight::frame()
                 [&](size_t i)
                 {
                     if (!known(i)) return;
-                    const vec3 mixed = glm::mix(glm::pow(gathered(i), root), glm::pow(light[i], root), float(blend.hysteresis));
-                    light[i] = glm::pow(mixed, power);
+                    const vec3 was = glm::pow(light[i], root);
+                    vec3 change = glm::pow(gathered(i), root) - was;
+                    float stays = float(blend.hysteresis);
+                    if (blend.detects)
+                    {
+                        if (light[i] == vec3(0.0f)) stays = 0.0f;
+                        const vec3 size = glm::abs(change);
+                        if (std::max({size.r, size.g, size.b}) > kLargeChange) stays = std::max(0.0f, stays - kLessStays);
+                        if (Text::luminance(change) > kBrightChange) change *= kTakenOfBright;
+                    }
+                    light[i] = glm::pow(glm::max(was + (1.0f - stays) * change, vec3(0.0f)), power);
                 });
 }
 

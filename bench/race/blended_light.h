@@ -15,7 +15,12 @@ struct BlendSettings
 {
     double hysteresis = 0.97; // share of what was there that stays
     double gamma = 1.0;       // values are blended as their roots of this order; the papers': 5
+    bool detects = false; // changes, as what ships does: what was black is replaced, over kLargeChange of a root's difference less stays
+                          // by kLessStays, and of a difference in luminance over kBrightChange a quarter is taken
 };
+
+// As shipped in NVIDIA's RTXGI (DDGI SDK 1.3), of roots.
+inline constexpr float kLargeChange = 0.25f, kLessStays = 0.75f, kBrightChange = 0.1f, kTakenOfBright = 0.25f;
 
 class BlendedLight
 {

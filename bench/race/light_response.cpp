@@ -95,11 +95,13 @@ public:
             way.name = fmt::format("ours, {} of {} probes a frame", probes, data.info.probeCount);
             if (auto status = switchedOn(probes, options.frames, &way); !status) return status;
         }
-        for (const double gamma : {1.0, 5.0})
+        for (const BlendSettings& blend :
+             {BlendSettings{options.hysteresis, 1.0}, {options.hysteresis, 5.0}, {options.hysteresis, 5.0, true}})
         {
             Way& way = ways.emplace_back();
-            way.name = fmt::format("blended, hysteresis {}, gamma {}", options.hysteresis, gamma);
-            BlendedLight light(data, direct, {options.hysteresis, gamma});
+            way.name = fmt::format("blended, hysteresis {}, gamma {}{}", options.hysteresis, blend.gamma,
+                                   blend.detects ? ", changes detected" : "");
+            BlendedLight light(data, direct, blend);
             for (uint32_t frame = 0; frame < options.frames; ++frame)
             {
                 light.frame();

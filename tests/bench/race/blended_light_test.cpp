@@ -109,5 +109,24 @@ TEST_F(BlendedLightTest, FollowsTheRecurrenceOfItsHysteresis)
     EXPECT_LT(blended[9], 0.7 * bounces.back()) << "ten frames are too few";
 }
 
+// What is black is replaced at once, as far as it isn't much brighter than that; then by more than its hysteresis says.
+TEST_F(BlendedLightTest, DetectsChangesAsShipped)
+{
+    const double hysteresis = 0.97, gamma = 5.0;
+    BlendedLight first(field, direct, {0.0, 1.0}), blended(field, direct, {hysteresis, gamma, true});
+    first.frame(), blended.frame();
+    for (size_t i = 0; i < first.bounced().size(); ++i)
+    {
+        const double arrived = std::pow(double(first.bounced()[i].g), 1.0 / gamma);
+        const double expected = std::pow((arrived > 0.1 ? 0.25 : 1.0) * arrived, gamma); // of grey light luminance is any channel's
+        EXPECT_NEAR(blended.bounced()[i].g, expected, 1e-3 * expected + 1e-9);
+    }
+    const std::vector<double> detected = means({hysteresis, gamma, true}, 100), plain = means({hysteresis, gamma}, 100);
+    EXPECT_GT(detected[30], 2.0 * plain[30]);
+    std::vector<vec3> light;
+    for (const uint32_t word : settled) light.push_back(Text::unpackSharedExponent(word));
+    EXPECT_NEAR(means({0.5, gamma, true}, 120).back(), mean(light), 0.01 * mean(light));
+}
+
 } // namespace
 } // namespace sconce
