@@ -120,6 +120,12 @@ Status SafeFile::commit()
     return success();
 }
 
+Status writable(const std::filesystem::path& target)
+{
+    const Result<SafeFile> file = SafeFile::create(target);
+    return file ? success() : Status(file.error());
+}
+
 Status writeText(const std::filesystem::path& target, std::string_view text)
 {
     Result<SafeFile> file = SafeFile::create(target);

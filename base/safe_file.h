@@ -33,6 +33,9 @@ private:
     int descriptor = -1;
 };
 
+/// Whether a file could be written now, as SafeFile::create() says: asked before the work. Nothing is left.
+Status writable(const std::filesystem::path& target);
+
 /// The whole of a small text under a name, crash-safe as above.
 Status writeText(const std::filesystem::path& target, std::string_view text);
 

@@ -124,7 +124,7 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
                       const std::filesystem::path& file, const Progress& progress)
 {
     // Whether the file can be written is known before hours of work, not after them.
-    if (const auto writable = SafeFile::create(file); !writable) return writable.error();
+    if (Status fine = writable(file); !fine) return fine;
     if (const std::string fault = validate(scene); !fault.empty()) return Error{ErrorCode::badInput, fault};
     const auto plan = planEffects(checkScene(scene), desc.effects);
     if (!plan) return plan.error();

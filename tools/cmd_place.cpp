@@ -10,7 +10,6 @@
 #include "placement/place.h"
 #include "runtime/field/field_data.h"
 #include "scene/scene_gltf.h"
-#include "shaders/shared/bake_passes.h"
 #include "tools/quality_option.h"
 
 namespace sconce::tools
@@ -157,7 +156,7 @@ int runPlace(const PlaceOptions& options, const Context& context)
     const Stopwatch watch;
     for (const std::string& name : {options.output, options.explain})
         if (!name.empty())
-            if (const auto file = SafeFile::create(name); !file) return fail(file.error());
+            if (Status fine = writable(name); !fine) return fail(fine.error());
     // With the pins before the scene, which takes longer to read than they take to be refused.
     Result<PlaceSettings> settings = settingsOf(options);
     if (!settings) return fail(settings.error());
@@ -178,10 +177,6 @@ int runPlace(const PlaceOptions& options, const Context& context)
     PlaceReport report;
     Result<ProbeSet> set = placeProbes(*scene, *settings, report, consoleProgress(context));
     if (!set) return fail(set.error());
-    const uint64_t most = (uint64_t(1) << gpu::kLinkTexelBits) / (6ull * knobs::surfaceTexels.value * knobs::surfaceTexels.value);
-    if (set->probes.size() > most)
-        report.warnings.push_back(
-            fmt::format("bakes of more than {} probes need fewer --surface-texels than {}.", most, knobs::surfaceTexels.value));
     for (const std::string& warning : report.warnings) note(context, fmt::format("Note: {}", warning));
     if (set->scene.empty()) set->scene = scene->name;
     if (Status status = saveProbes(*set, options.output); !status) return fail(status.error());

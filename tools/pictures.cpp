@@ -46,7 +46,7 @@ Status PictureOptions::writable() const
 {
     for (const std::string& name : {output, png})
         if (!name.empty())
-            if (const auto file = SafeFile::create(name); !file) return file.error();
+            if (Status fine = sconce::writable(name); !fine) return fine;
     return success();
 }
 

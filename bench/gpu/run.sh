@@ -89,7 +89,7 @@ part picture_all like_expected all
 octahedral=$work/octahedral.sconce
 part bake_octahedral bin/sconce bake "$(scene_of "$judged")" --probes "fields/$judged.probes.json" --resolution 320 --chart octahedral --bounces 0 -o "$octahedral" --no-journal --json --quiet
 # Lists that fill a large card several times over, each lane with several rays as the device has it, and with one.
-# Its maps are octahedral ones of as many texels a side as the faces that they are made of, and to a power of two: memory as ours.
+# The maps of W' are octahedral, of as many texels a side as the faces that they are made of, to a power of two: 256, nearly ours' memory.
 wang=$work/wang.sconce
 part bake_wang bin/sconce bake "$(scene_of "$judged")" --probes "fields/$judged.probes.json" --resolution 512 --surface-texels 0 --bounces 0 -o "$wang" --no-journal --json --quiet
 race=("rays/$judged.rays" --field ours="fields/$judged.sconce" --field b0plus-octree="$octahedral" --field wang="$wang" --timed "$list" --warm-up "$warm" --json)

@@ -49,7 +49,7 @@ RayShaders traceRaysPass(Baseline baseline);
 /// by those of Majercik et al. 2021; what has lists is lit by them, as ours is.
 /// @param lookUpBias  of b0plus, metres along the normal
 /// @param lookUpView  times as far towards the viewer
-LightShaders lightPasses(Baseline baseline, float lookUpBias = 0.1f, float lookUpView = 1.0f);
+LightShaders lightPasses(Baseline baseline, float lookUpBias = gpu::kLookUpBias, float lookUpView = knobs::lookUpView.value);
 
 /// The same text on the CPU, on all cores. The field is one of baselineField(). Misuse: spans of different length assert.
 void traceBaselineOnCpu(const FieldData& field, Baseline baseline, std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits);

@@ -3,12 +3,14 @@
 #include <optional>
 #include <string_view>
 
+#include "base/knobs.h"
 #include "base/progress.h"
 #include "bench/reference/ray_scene.h"
 #include "runtime/field/field_data.h"
 #include "runtime/field/light_field.h"
 #include "runtime/vulkan/pipeline.h"
 #include "scene/probe_grid.h"
+#include "shaders/opponents/baseline.h"
 #include "shaders/opponents/volume.h"
 
 namespace sconce
@@ -29,10 +31,10 @@ std::optional<Volume> volumeNamed(std::string_view name);
 
 struct VolumeSettings
 {
-    uint32_t rays = 1024;   // a probe
-    float bias = 0.1f;      // metres that look-ups are moved along the normal
-    float viewShare = 1.0f; // of them towards the viewer; 4: 0.2 to 0.8, as Majercik et al. 2021 publish
-    uint32_t bounces = 2;   // of the light that arrives at probes, as BakeSettings::bounces
+    uint32_t rays = 1024;                      // a probe
+    float bias = gpu::kLookUpBias;             // metres that look-ups are moved along the normal
+    float viewShare = knobs::lookUpView.value; // of them towards the viewer; 4: 0.2 to 0.8, as Majercik et al. 2021 publish
+    uint32_t bounces = 2;                      // of the light that arrives at probes, as BakeSettings::bounces
     uint64_t seed = 1;
     bool relocate = true; // a grid's probes in solids or close to surfaces are moved, as published for ddgi
     bool solids = true;   // what is seen from behind has an inside; false for scenes of open sheets, where no probe stands in a solid

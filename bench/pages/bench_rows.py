@@ -116,10 +116,13 @@ def references(name, scene):
     return f"{name}: {reference['spp']} paths, {reference['bounces']} bounces, of our diffuse relMSE unsure {unsure:.5f}"
 
 
+def commit():
+    return subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+
+
 def write(name, what, commands, notes, rows, machine="Mesa's software Vulkan, llvmpipe, LLVM 15, 2 cores"):
-    commit = subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
     lines = ",\n".join(f"  {json.dumps(key)}: {json.dumps(row)}" for key, row in rows.items())
-    head = {"what": what, "command": "; ".join(commands), "commit": commit, "machine": machine, "notes": notes}
+    head = {"what": what, "command": "; ".join(commands), "commit": commit(), "machine": machine, "notes": notes}
     text = json.dumps(head, indent=1)[:-2] + ',\n "rows": {\n' + lines + "\n }\n}\n"
     json.loads(text)
     (ROOT / "bench/results" / name).write_text(text)
@@ -177,9 +180,9 @@ def summary(rows, scenes):
     """Over the scenes, the least and the most of what a method's figures are times ours, and KiB a probe."""
     found = {}
     for name in scenes:
-        for paths in (1, 16, 64):
+        for paths in (1, 16):
             rows[f"{slug(name)}__path_tracer_better_{paths}"] = better(rows, slug(name), paths) | {"label": f"path tracer, {paths} paths, filtered where that helps"}
-    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "ddgi_bytes", "sh_grid_bytes", "path_tracer_filtered", "path_tracer_filtered_16", "path_tracer_64", "path_tracer_better_1", "path_tracer_better_16", "path_tracer_better_64"):
+    for method in ("ours_grid", "b0plus", "b0plus_octree", "ddgi", "ddgi_placed", "sh_grid", "ddgi_bytes", "sh_grid_bytes", "path_tracer_64", "path_tracer_better_1", "path_tracer_better_16"):
         for figure in ("wrong", "wrong_02", "diffuse_relmse", "beauty_flip", "frame_ms"):
             pairs = [(rows[f"{slug(name)}__{method}"][figure], rows[f"{slug(name)}__ours"][figure]) for name in scenes
                      if f"{slug(name)}__{method}" in rows]  # a volume of equal bytes may need more probes than there may be
@@ -205,14 +208,14 @@ def look_up(point):
 
 
 def kept(name, scenes):
-    """Of a table that has views besides those that were measured now: its rows, the views' names by slug, and a note of where they come from."""
+    """Of a table that has views besides those that were measured now: its rows, the views' names by slug, and the notes about them, which begin with their names."""
     old = json.loads((ROOT / "bench/results" / name).read_text()) if (ROOT / "bench/results" / name).exists() else {"rows": {}, "commit": ""}
     names = {key.split("__")[0]: row["scene"] for key, row in old["rows"].items() if "scene" in row and row["scene"] not in scenes}
-    return old["rows"], names, [f"{', '.join(names.values())}: measured before, of {old['commit']}"] if names else []
+    return old["rows"], names, [note for note in old.get("notes", []) if note.split(":")[0] in names.values()]
 
 
 def methods(files):
-    scenes, commands = scenes_of(files)
+    scenes, _ = scenes_of(files)
     before, others, of_before = kept("scene_methods.json", scenes)
     rows = {key: row for key, row in before.items() if key.split("__")[0] in others}
     for name, scene in scenes.items():
@@ -224,9 +227,11 @@ def methods(files):
     rows |= summary(rows, [*scenes, *others.values()])
     notes = ["relMSE by parts of the reference's paths, so without its noise; FLIP with it; rays wrong within 1 and 0.2 % of the diagonal, in %",
              "..._unsure: the standard error of relMSE by the reference's noise",
-             "times are CPU time of all threads divided by the cores; nothing else running"] + [references(name, scene) for name, scene in scenes.items()] + of_before
-    write("scene_methods.json", "Every method at its default in one run", commands, notes, rows)
-    write("scene_targets.json", "Targets: ours over the hardest opponent, which is named", commands, ["a ratio above the asked one is a missed target"],
+             "times are CPU time of all threads divided by the cores; nothing else running, where a view's note says no other"]
+    notes += [f"{references(name, scene)}; of {commit()}" for name, scene in scenes.items()] + of_before
+    command = ["bench/pages/methods_table.sh"]
+    write("scene_methods.json", "Every method at its default, all of a view in one run", command, notes, rows)
+    write("scene_targets.json", "Targets: ours over the hardest opponent, which is named", command, ["a ratio above the asked one is a missed target"],
           targets(scenes, others))
 
 

@@ -245,7 +245,7 @@ Result<Reference> renderReference(const Scene& scene, const ReferenceSettings& s
 Result<Reference> renderReference(const RayScene& rays, const ReferenceSettings& settings, const Progress& progress)
 {
     if (Status fine = check(settings); !fine) return fine.error();
-    const PathTracer tracer(rays, settings.roughness, settings.straight ? kStraight : settings.bounces);
+    const PathTracer tracer(rays, settings.roughness, settings.pathBounces());
     Frame frame(settings, rays, tracer);
 
     tbb::task_group_context context;
@@ -283,7 +283,7 @@ Result<PixelLight> pixelReference(const RayScene& rays, ReferenceSettings settin
     if (pixel.x >= settings.width || pixel.y >= settings.height)
         return Error{ErrorCode::badArgument, fmt::format("Pixel {},{} is outside of the picture of {} x {}; the first is 0,0", pixel.x,
                                                          pixel.y, settings.width, settings.height)};
-    const PathTracer tracer(rays, settings.roughness, settings.straight ? kStraight : settings.bounces);
+    const PathTracer tracer(rays, settings.roughness, settings.pathBounces());
     const Frame frame(settings, rays, tracer);
     const vec3 centre = frame.through(pixel.x, pixel.y, vec2(0.5f));
     glm::dvec3 sums[3]{}, squares[3]{}; // of direct, diffuse, glossy

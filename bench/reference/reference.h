@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "bench/reference/image_io.h"
+#include "bench/reference/path_tracer.h"
 #include "bench/reference/ray_scene.h"
 #include "scene/scene.h"
 
@@ -30,6 +31,8 @@ struct ReferenceSettings
             .value; // true: every path starts at the pixel's centre, as a rasteriser's, textures alone by a box filter; false: all
     bool parts = knobs::parts.value; // layers kParts of beauty and the indirect terms: what some of the paths bring
     Camera camera;
+
+    uint32_t pathBounces() const { return straight ? kStraight : bounces; } // as PathTracer takes them
 };
 
 struct Reference

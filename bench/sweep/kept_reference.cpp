@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 std::string answersOf(const RayScene& rays, const ReferenceSettings& settings)
 {
     constexpr uint32_t kPaths = 256;
-    const PathTracer tracer(rays, settings.roughness, settings.straight ? kStraight : settings.bounces);
+    const PathTracer tracer(rays, settings.roughness, settings.pathBounces());
     std::string bits;
     for (uint32_t i = 0; i < kPaths; ++i)
     {

@@ -35,8 +35,7 @@ constexpr uint32_t kJudgedMaps = 128;                           // texels, of gr
 constexpr uint32_t kJudgedRays = 65536, kFewestJudgedRays = 64; // of all probes of a volume on such a grid, and of one at least
 constexpr uint64_t kPathSeed = 1000;                            // the path tracer's paths are not the reference's
 
-// Of look-ups: metres along the normal, which reach beyond what is best in any view, and times as far towards the viewer: not at all, as
-// far, and as Majercik et al. 2021 publish.
+// Of look-ups: metres along the normal, and times as far towards the viewer: as far, not at all, and as Majercik et al. 2021 publish.
 constexpr float kLookUpBiases[] = {0.0f, 0.05f, 0.1f, 0.2f, 0.4f, 0.8f, 1.6f, 3.2f}, kLookUpViews[] = {1.0f, 0.0f, 4.0f};
 
 double secondsNow()
@@ -168,12 +167,9 @@ Result<double> SceneBench::wrongOnGrid(const ProbeGrid& grid, const PointSetting
     return 2.0 - score->right1 - score->right02;
 }
 
+/// Not kept: its light takes a minute at most.
 Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume volume, Json& cost, const Progress& progress)
 {
-    PointSettings unbiased = settings;
-    unbiased.lookUpBias = unbiased.lookUpView = 0.0f;
-    unbiased.frame = {};
-    const std::string key = settings.method + settingsJson(unbiased).dump();
     Result<FieldData> places = Error{ErrorCode::badInput, "A volume has no probes."};
     if (volume == Volume::ddgiPlaced)
         places = fields.fieldFor(settings, cost, progress);
@@ -191,15 +187,10 @@ Result<FieldData> SceneBench::volumeFor(const PointSettings& settings, Volume vo
     }
     if (!places) return places;
     const double begin = secondsNow();
-    auto made = volumes.find(key);
-    if (made == volumes.end())
-    {
-        auto filled = volumeOn(std::move(*places), settings, volume, progress, raysOfVolume(places->probes.size()));
-        if (!filled) return filled;
-        made = volumes.emplace(key, FilledVolume{std::move(*filled), secondsNow() - begin}).first;
-    }
-    cost["bake_s"] = made->second.seconds;
-    return made->second.field;
+    const uint32_t probeRays = raysOfVolume(places->probes.size());
+    auto made = volumeOn(std::move(*places), settings, volume, progress, probeRays);
+    cost["bake_s"] = secondsNow() - begin;
+    return made;
 }
 
 Result<FieldData> SceneBench::volumeOn(FieldData places, const PointSettings& settings, Volume volume, const Progress& progress,

@@ -126,12 +126,6 @@ private:
     Json referenceJson; // null until the reference is there
     ImageSet referenceImages;
     std::vector<float> lampsAndSky; // diffuse light straight from there, of the path tracer
-    struct FilledVolume
-    {
-        FieldData field;
-        double seconds = 0.0;
-    };
-    std::map<std::string, FilledVolume> volumes; // by all settings but the look-ups': their light takes long
     std::optional<RayScene> truth;
     std::optional<RaySet> rays;
     std::array<std::optional<DeviceScene>, 3> deviceScenes; // whose samples of area light have maps, have none, and without such samples

@@ -4,8 +4,8 @@
 //         Dynamic Global Illumination for Production"; and what ours has, of every method the same: a probe that a surface hides has no say
 #include "opponents/baseline.h"
 #include "opponents/grid_cell.glsl"
-layout(constant_id = kGridBiasId) const float kGridBias = 0.1; // metres along the normal (Majercik et al. 2021)
-layout(constant_id = kGridBiasViewId) const float kGridBiasView = 0.1; // and towards the viewer
+layout(constant_id = kGridBiasId) const float kGridBias = kLookUpBias; // metres along the normal (Majercik et al. 2021)
+layout(constant_id = kGridBiasViewId) const float kGridBiasView = kLookUpBias; // and towards the viewer
 
 /// Where a point's light is looked up: off the surface, or it would be the surface that hides it. 2017 knew no bias.
 vec3 gridBiased(vec3 point, vec3 normal, vec3 view)
