@@ -126,7 +126,7 @@ struct Scene
     bool twoSided = true;              // false: only the front (counter-clockwise) of a triangle is seen, by the eye and by probes
     std::vector<std::string> warnings; // what the importer ignored or mended, a sentence each
 
-    Bounds bounds() const;
+    Bounds bounds() const; // of the triangles, not of vertices that none uses; looks at each: keep what it returns
 };
 
 /// Geometric normal of a triangle by its winding, unit; +y for a degenerate one.

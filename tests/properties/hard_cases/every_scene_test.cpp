@@ -34,6 +34,7 @@ protected:
     {
         made = hardScene(GetParam());
         if (!made) GTEST_SKIP() << "the scene " << GetParam() << " is missing; set SCONCE_SCENES";
+        bounds = made->scene.bounds();
         glossy = glossyRaysOf(*made, kRays);
     }
 
@@ -41,7 +42,6 @@ protected:
     std::pair<vec3, vec3> anyRay(uint64_t stream, size_t i) const
     {
         Random random(20, stream, i);
-        const Bounds bounds = made->scene.bounds();
         vec3 d = unitVector(random);
         if (i % 4 == 1) d[int(i / 4 % 3)] = 0.0f;
         if (i % 4 == 2) d *= vec3(1.0f, 1e-6f, i & 4 ? 1e-7f : 1.0f);
@@ -60,6 +60,7 @@ protected:
     std::string row(const char* what) const { return std::string(GetParam()) + ": " + what; }
 
     std::unique_ptr<HardScene> made;
+    Bounds bounds; // of `made`'s scene
     RaySet glossy;
 };
 

@@ -18,6 +18,7 @@ namespace
 
 std::vector<vec3> probesSeenFrom(const RayScene& rays, uint32_t perCamera)
 {
+    const float diagonal = rays.scene().bounds().diagonal();
     std::vector<vec3> probes;
     for (const Camera& camera : rays.scene().cameras)
         for (uint32_t i = 0; i < perCamera; ++i)
@@ -25,8 +26,8 @@ std::vector<vec3> probesSeenFrom(const RayScene& rays, uint32_t perCamera)
             Random random(5, probes.size(), i);
             const vec3 d = unitVector(random);
             const auto hit = rays.closest(camera.eye, d);
-            const float reach = hit ? hit->t : 0.1f * rays.scene().bounds().diagonal();
-            probes.push_back(camera.eye + 0.5f * std::min(reach, 0.2f * rays.scene().bounds().diagonal()) * d);
+            const float reach = hit ? hit->t : 0.1f * diagonal;
+            probes.push_back(camera.eye + 0.5f * std::min(reach, 0.2f * diagonal) * d);
         }
     return probes;
 }

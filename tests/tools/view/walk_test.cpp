@@ -81,8 +81,9 @@ TEST(Walk, LooksWhereItIsTold)
 TEST(Walk, SpeedFollowsTheSceneAndStaysARuns)
 {
     Scene small, large;
-    small.positions = {{0, 0, 0}, {0.3f, 0, 0.4f}};
-    large.positions = {{0, 0, 0}, {3000, 0, 4000}};
+    small.positions = {{0, 0, 0}, {0.3f, 0, 0}, {0.3f, 0, 0.4f}};
+    large.positions = {{0, 0, 0}, {3000, 0, 0}, {3000, 0, 4000}};
+    small.triangles = large.triangles = {{0, 1, 2}};
     EXPECT_NEAR(walkSpeed(small), 0.05f, 1e-6f);
     EXPECT_EQ(walkSpeed(large), 8.0f);
 }
