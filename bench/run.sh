@@ -16,7 +16,8 @@ if [[ ${1:-} == --full ]]; then
     mapfile -t files < <(find "${SCONCE_SCENES:-$root/../shared/scenes}" \( -name '*.gltf' -o -name '*.glb' \) -not -path '*/gltf_oddities/*' 2> /dev/null | sort)
     arguments=(cornell-glossy temple hall town "${files[@]}" "${@:2}")
 elif [[ $# -eq 0 || $1 == -* ]]; then
-    arguments=(cornell-glossy --resolution 192 "$@")
+    arguments=(cornell-glossy "$@")
+    case " $* " in *" --resolution"[\ =]*) ;; *) arguments+=(--resolution 192) ;; esac
 fi
 case " ${arguments[*]} " in *" -o "* | *" --output "*) ;; *) arguments+=(-o "$root/out/bench") ;; esac
 cd "$start"

@@ -76,14 +76,13 @@ Result<std::vector<Seen>> chooseViews(const Scene& scene, const RayScene& truth,
     if (!visibility) return visibility.error();
     auto space = findFreeSpace(scene, *visibility, {});
     if (!space) return space.error();
-    Bounds bounds;
-    for (const vec3 position : scene.positions) bounds.add(position);
+    const float diagonal = scene.bounds().diagonal();
     Random random(options.seed, 41);
     std::vector<Seen> views(options.views);
     for (Seen& view : views)
     {
         view.camera.eye = space->randomPoint(random);
-        view.camera.forward = mostOpen(truth, view.camera.eye, bounds.diagonal(), random);
+        view.camera.forward = mostOpen(truth, view.camera.eye, diagonal, random);
         view.camera.verticalFov = kFov;
         view.toProbe = std::numeric_limits<float>::infinity();
         for (const gpu::ProbeHeader& probe : field.probes)

@@ -622,8 +622,9 @@ Result<FieldData> bakeAll(Gpu& gpu, const Scene& scene, std::span<const vec3> pr
     {
         Lamps lamps; // which needs no device
         if (info.surfaceSize > 0 && settings.rays && settings.lampTexels > 0)
-            lamps = settings.layout && settings.layout->lamps ? lampsIn(scene, *settings.layout->lamps)
-                                                              : findLamps(*settings.rays, info, bake.field.probes, settings.lampTexels);
+            lamps = lampsIn(scene, settings.layout && settings.layout->lamps // the rays' scene may shine more
+                                       ? *settings.layout->lamps
+                                       : findLamps(*settings.rays, info, bake.field.probes, settings.lampTexels));
         if (settings.layout && !settings.layout->lamps) settings.layout->lamps = lamps;
         bake.field.lamps = std::move(lamps.lamps);
         bake.field.lampMaps = std::move(lamps.maps);

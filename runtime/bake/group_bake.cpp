@@ -126,6 +126,9 @@ Status planGroups(const Scene& scene, const BakeSettings& settings, std::vector<
     auto selected = selectLights(scene, groups);
     if (!selected) return selected.error();
     if (settings.liveLinks > 0) plan.live = takeLiveLights(groups, *selected);
+    std::vector<Light> lights;
+    for (const uint32_t light : plan.live) lights.push_back(scene.lights[light]);
+    if (std::string fault = lightFault(lights); !fault.empty()) return Error{ErrorCode::badArgument, "Bake, live links: " + fault};
     plan.groups = std::move(groups);
     plan.selected = std::move(*selected);
     plan.layout.liveLinks = settings.liveLinks;

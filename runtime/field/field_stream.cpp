@@ -83,11 +83,13 @@ uint64_t MapReader::read() const
     return count;
 }
 
-bool MapReader::failed(uint32_t probe) const
+void MapReader::markLost(std::span<uint8_t> of)
 {
-    if (lostCount.load(std::memory_order_acquire) == 0) return false;
+    if (!losing.load(std::memory_order_acquire)) return;
     const std::scoped_lock lock(mutex);
-    return std::ranges::find(lost, probe) != lost.end();
+    for (const uint32_t probe : lost) of[probe] = 1;
+    lost.clear();
+    losing.store(false, std::memory_order_release);
 }
 
 void MapReader::run(std::stop_token stop)
@@ -112,7 +114,7 @@ void MapReader::run(std::stop_token stop)
             continue;
         }
         lost.push_back(maps.probe);
-        lostCount.store(lost.size(), std::memory_order_release);
+        losing.store(true, std::memory_order_release);
         if (!fault)
             fault = Error{status.error().code, fmt::format("The maps of probe {} are not there: {}", maps.probe, status.error().message)};
         free.push_back(std::move(maps));
@@ -212,6 +214,7 @@ Result<FieldStream> makeFieldStream(Gpu& gpu, const LightField& field, const Fie
     state->names.reserve(probes);
     state->reader = std::make_unique<MapReader>(pool->file, 2 * desc.probesAFrame);
     state->filledAt.assign(pool->slots, 0);
+    state->lost.assign(probes, 0);
     pool->fed = true;
     state->fed.reset(pool);
     state->forgets = std::exchange(pool->used, true);
@@ -287,11 +290,12 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     state.order.clear();
     Counts& counts = state.counts;
     counts = {};
+    state.reader->markLost(state.lost);
     for (uint32_t probe = 0; probe < state.slotOfProbe.size(); ++probe)
     {
         const bool there = state.slotOfProbe[probe] != gpu::kNoProbe;
         counts.resident += there ? 1 : 0;
-        if (there || state.reader->failed(probe)) continue;
+        if (there || state.lost[probe] != 0) continue;
         counts.missing += state.asked[probe] > 0.0f ? 1 : 0;
         state.order.emplace_back(state.worthOf(probe, eye), probe);
     }
@@ -300,7 +304,7 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     state.names.clear();
     for (size_t i = 0; i < most; ++i)
         if (state.slotFor(state.order[i].second, eye) != gpu::kNoProbe) state.names.push_back(state.order[i].second);
-    counts.full = counts.missing > 0 && (state.names.empty() || state.asked[state.names.front()] == 0.0f);
+    counts.full = counts.missing > 0 && std::ranges::none_of(state.names, [&](uint32_t probe) { return state.asked[probe] > 0.0f; });
     state.reader->want(state.names);
     counts.read = state.reader->read();
 }

@@ -38,8 +38,9 @@ public:
     bool reads() const;
     Status status() const;
     uint64_t read() const;
-    /// Whether a probe's maps could not be read.
-    bool failed(uint32_t probe) const; // quick where none has
+    /// Marks probes whose maps could not be read, each once. Waits for nothing where there are none.
+    /// @param of  a flag for each probe
+    void markLost(std::span<uint8_t> of);
 
 private:
     void run(std::stop_token stop);
@@ -49,8 +50,8 @@ private:
     std::condition_variable_any changed;
     std::vector<uint32_t> wanted; // the next one last
     std::vector<Maps> free, ready;
-    std::vector<uint32_t> lost; // could not be read
-    std::atomic<size_t> lostCount{0};
+    std::vector<uint32_t> lost; // could not be read, and isn't marked yet
+    std::atomic<bool> losing{false};
     std::optional<Error> fault;
     uint32_t reading = gpu::kNoProbe;
     uint64_t count = 0;
@@ -72,6 +73,7 @@ struct FieldStream::State
     std::unique_ptr<MapReader> reader;
     std::vector<uint32_t> probeOfSlot, slotOfProbe;
     std::vector<uint64_t> filledAt;                // of each slot, by record
+    std::vector<uint8_t> lost;                     // of each probe: its maps could not be read
     std::vector<float> asked;                      // of each probe: how often it was asked for in a frame, less the longer ago
     std::vector<std::pair<Worth, uint32_t>> order; // of a record: missing probes, the worthiest first
     std::vector<uint32_t> names;                   // the same, for the reader

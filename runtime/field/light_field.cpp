@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -459,7 +458,9 @@ void recordTrace(const RayTracer& tracer, VkCommandBuffer cmd, const Buffer& ray
 
 Status RayTracer::trace(std::span<const gpu::Ray> rays, std::span<gpu::RayHit> hits, double* milliseconds) const
 {
-    assert(rays.size() == hits.size());
+    if (rays.size() != hits.size())
+        return Error{ErrorCode::badArgument,
+                     fmt::format("there are {} rays and room for {} hits; give a hit for each ray", rays.size(), hits.size())};
     // 16 MiB of hits, as much as one staging copy takes.
     constexpr size_t kPiece = size_t(1) << 18;
     const size_t piece = std::min(rays.size(), kPiece);

@@ -783,7 +783,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     return file->commit();
 }
 
-/// @param maps  whether distance and radiance are read; else they stay empty
+/// @param maps  whether distance and radiance are read; else they stay empty, of what can do without: cube faces in light that stays
 Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
 {
     uint64_t rawBytes[sectionCount] = {};
@@ -813,6 +813,12 @@ Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
     text.resize(rawBytes[meta]);
     if (Status status = readInto(meta, std::as_writable_bytes(std::span(text))); !status) return status.error();
     if (!applyMeta(text, field)) return reader.damage("block 'meta' is not the JSON text it should be");
+    const bool octahedral = field.info.chart != gpu::kChartCube;
+    if (!maps && (octahedral || !field.groups.empty() || field.live.links > 0))
+        return Error{ErrorCode::badArgument,
+                     fmt::format("The maps of light field '{}' can't be read while frames are drawn: {}. Load all of it, or bake it {}.",
+                                 reader.name, octahedral ? "they are octahedral" : "its light may change",
+                                 octahedral ? "with cube faces" : "without light groups and live links")};
     const uint64_t ofGroup = rawBytes[radiance] + rawBytes[irradiance] + rawBytes[prefiltered] + rawBytes[surface];
     if (rawBytes[groupShares] != field.groups.size() * ofGroup)
         return reader.damage(
@@ -1011,35 +1017,28 @@ Status MapFile::read(uint32_t probe, std::span<uint32_t> distance_, std::span<ui
 
 Result<FieldAndMaps> openField(const std::filesystem::path& file)
 {
-    return guarded(
-        file,
-        [&]() -> Result<FieldAndMaps>
-        {
-            Result<Reader> reader = Reader::open(file);
-            if (!reader) return reader.error();
-            VerifyReport rows;
-            Result<Table> table = readTable(*reader, rows);
-            if (!table) return table.error();
-            Result<FieldData> field = readField(*reader, *table, false);
-            if (!field) return field.error();
-            if (field->info.chart != gpu::kChartCube || !field->groups.empty() || field->live.links > 0)
-                return Error{
-                    ErrorCode::badArgument,
-                    fmt::format("The maps of light field '{}' can't be read while frames are drawn: {}. Load all of it, or bake it {}.",
-                                file.string(), field->info.chart != gpu::kChartCube ? "they are octahedral" : "its light may change",
-                                field->info.chart != gpu::kChartCube ? "with cube faces" : "without light groups and live links")};
-            auto made = std::make_unique<MapFile::State>();
-            for (const Block& block : table->blocks)
-            {
-                if (block.section == distance) made->distanceBlocks.push_back(block);
-                if (block.section == radiance && block.rawBytes > 0) made->radianceBlocks.push_back(block);
-            }
-            made->distanceWords = field->info.wordsPerProbe;
-            for (const Block& block : made->radianceBlocks) made->radianceWords += block.rawBytes / sizeof(uint32_t);
-            made->radianceWords /= std::max(field->info.probeCount, 1u);
-            made->reader = std::move(*reader);
-            return FieldAndMaps{std::move(*field), MapFile(std::move(made))};
-        });
+    return guarded(file,
+                   [&]() -> Result<FieldAndMaps>
+                   {
+                       Result<Reader> reader = Reader::open(file);
+                       if (!reader) return reader.error();
+                       VerifyReport rows;
+                       Result<Table> table = readTable(*reader, rows);
+                       if (!table) return table.error();
+                       Result<FieldData> field = readField(*reader, *table, false);
+                       if (!field) return field.error();
+                       auto made = std::make_unique<MapFile::State>();
+                       for (const Block& block : table->blocks)
+                       {
+                           if (block.section == distance) made->distanceBlocks.push_back(block);
+                           if (block.section == radiance && block.rawBytes > 0) made->radianceBlocks.push_back(block);
+                       }
+                       made->distanceWords = field->info.wordsPerProbe;
+                       for (const Block& block : made->radianceBlocks) made->radianceWords += block.rawBytes / sizeof(uint32_t);
+                       made->radianceWords /= std::max(field->info.probeCount, 1u);
+                       made->reader = std::move(*reader);
+                       return FieldAndMaps{std::move(*field), MapFile(std::move(made))};
+                   });
 }
 
 Result<VerifyReport> verifyField(const std::filesystem::path& file)

@@ -148,11 +148,13 @@ void chooseProbes(LiveLight::State& state, const RelightBudget& budget)
     state.turn.insert(state.turn.end(), state.others.begin(), end);
 }
 
-/// After a record of so many bounces: a round ends with its last probe.
+/// After a record of so many bounces: a round ends with its last probe. Where it takes several records, each probe's bounces are of what
+/// the others sent before: for light that goes from one to the other such a round is one sweep, whatever its bounces.
 void countRound(LiveLight::State& state, uint32_t bounces)
 {
     for (const uint32_t probe : state.turn) state.probes[probe].direct = false, state.probes[probe].lit = true;
-    state.ofRound = std::min(state.ofRound, bounces);
+    constexpr uint32_t kOfSweep = 2;
+    state.ofRound = std::min(state.ofRound, state.turn.size() == state.probes.size() ? bounces : std::min(bounces, kOfSweep));
     if (!std::ranges::all_of(state.probes, &LiveLight::State::Probe::lit)) return;
     for (auto& probe : state.probes) probe.lit = false;
     state.bounces -= std::min(state.bounces, std::exchange(state.ofRound, kMostBouncesOfRecord));

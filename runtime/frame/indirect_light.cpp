@@ -1,7 +1,6 @@
 #include "runtime/frame/indirect_light.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include <fmt/format.h>
 
@@ -497,7 +496,6 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
     own.size = {desc.width, desc.height};
     own.glossyRays = std::clamp(view.glossyRays, knobs::glossyRays.least, knobs::glossyRays.most);
     if (own.fieldFromNormals == mat3(0.0f)) own.fieldFromNormals = mat3(1.0f); // of a view that was filled by hand
-    assert(own.size == view.size && own.glossyRays == view.glossyRays);
     Recording recording(*this, cmd, timer);
     recording.begin(own);
     recording.classify();

@@ -1,6 +1,7 @@
 // The door: handles that keep alive what they need.
 #include "runtime/sconce.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -12,6 +13,8 @@
 #include "runtime/field/light_field_file.h"
 #include "runtime/frame/indirect_light.h"
 #include "scene/builtin_scenes.h"
+#include "scene/mesh_builder.h"
+#include "scene/triangle_rays.h"
 #include "tests/support/device.h"
 #include "tests/support/files.h"
 
@@ -77,6 +80,53 @@ TEST_F(Door, BakesTheBytesOfTheBakeBehindIt)
     ASSERT_TRUE(field) << field.error().message;
     ASSERT_TRUE(saveField(*field, *folder / "behind.sconce"));
     EXPECT_EQ(testing_support::readText(*folder / "behind.sconce"), testing_support::readText(file()));
+}
+
+// The rays are a host's own, of its scene, in which the lamp still shines.
+TEST_F(Door, EmittersThatAreLeftOutShineThroughNoRays)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, mesh.material("floor", vec3(0.5f)));
+    mesh.quad({9.5f, 16, -0.5f}, {10.5f, 16, -0.5f}, {10.5f, 16, 0.5f}, {9.5f, 16, 0.5f}, mesh.emitter("lamp", vec3(2000.0f)));
+    const auto rays = TriangleRays::build(scene);
+    ASSERT_TRUE(rays);
+    BakeDesc desc;
+    desc.resolution = 64;
+    desc.bounces = 1;
+    desc.rays = &*rays;
+    const std::vector<vec3> probes = {{0.0f, 1.0f, 0.0f}};
+    for (const char* effects : {"auto", "auto,-emitters"})
+    {
+        desc.effects = effects;
+        const Status baked = bakeLightField(*device, scene, probes, desc, *folder / "rays.sconce");
+        ASSERT_TRUE(baked) << baked.error().message;
+        const auto field = loadField(*folder / "rays.sconce");
+        ASSERT_TRUE(field);
+        const bool shines = desc.effects == "auto";
+        EXPECT_EQ(std::ranges::any_of(field->lamps, [](const gpu::Lamp& lamp) { return lamp.radiance != vec3(0.0f); }), shines);
+        uint32_t light = 0;
+        for (size_t i = 0; i < field->irradiance.size(); i += 2) light |= field->irradiance[i];
+        EXPECT_EQ(light != 0, shines);
+    }
+}
+
+TEST_F(Door, AsManyHitsAsRaysAreTraced)
+{
+    ValidatedDevice owner;
+    const auto device = Device::create(owner.host());
+    ASSERT_TRUE(device);
+    const auto field = LightField::load(*device, file());
+    ASSERT_TRUE(field);
+    const auto tracer = RayTracer::create(*device, *field);
+    ASSERT_TRUE(tracer);
+    std::vector<gpu::RayHit> hits(9);
+    const Status status = tracer->trace(rays(10, 0.0f), hits);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().code, ErrorCode::badArgument);
 }
 
 TEST_F(Door, HandlesOutliveWhatTheyWereMadeFrom)

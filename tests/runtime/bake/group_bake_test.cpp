@@ -358,6 +358,29 @@ TEST_F(GroupBake, AKeptDimmedFieldComesBackToWhatWasBaked)
     EXPECT_EQ(found, room().surfaceLight);
 }
 
+// Before hours of bakes, whose field could not be lit or kept.
+TEST_F(GroupBake, LightsThatCannotMoveAreRefusedBeforeTheBake)
+{
+    Scene many = litRoom(), bright = litRoom();
+    many.lights.resize(kMostLiveLights + 1, many.lights[0]);
+    bright.lights[0].intensity = vec3(1e9f);
+    for (const Scene& scene : {many, bright})
+    {
+        const auto rays = TriangleRays::build(scene);
+        ASSERT_TRUE(rays);
+        BakeSettings moving = settings();
+        moving.rays = &*rays;
+        moving.liveLinks = 8;
+        int begun = 0;
+        BakeReport report;
+        const auto refused = bakeLightGroups(
+            device.gpu(), scene, kProbes, moving, {}, [&](std::string_view, double) { return ++begun, true; }, report);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::badArgument);
+        EXPECT_EQ(begun, 0) << refused.error().message;
+    }
+}
+
 TEST_F(GroupBake, WhatHasNoSurfaceLightIsRefused)
 {
     BakeSettings bare = settings();
