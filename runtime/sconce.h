@@ -81,8 +81,9 @@ private:
 class LightField
 {
 public:
-    /// Reads and uploads a .sconce file. Errors: fileError, badInput (names the damaged block, or the version), badArgument (knobs out of
-    /// range: named), outOfMemory (names the bytes), missingFeature (a limit that it exceeds), deviceFailure.
+    /// Reads and uploads a .sconce file, by submits to HostVulkan::queue that it waits for. Errors: fileError, badInput (names the damaged
+    /// block, or the version), badArgument (knobs out of range: named), outOfMemory (names the bytes), missingFeature (a limit that it
+    /// exceeds), deviceFailure.
     /// @param resident  0: all of it is on the device. Else so many probes' maps, which are nearly all of it, at a time: FieldStream reads
     /// those that
     ///                  frames ask for; without them light comes from what is known in the open. badArgument where light is in groups or
@@ -108,7 +109,8 @@ public:
     IndirectEffects effectsOfFrames() const;
     /// A frame's view with every default, of this field; its camera, seed and what it follows are the host's.
     gpu::FrameView frameView(uint32_t width, uint32_t height) const;
-    /// Takes effect for command buffers submitted after it. Not while the GPU reads the field. Errors: badArgument (names the knob).
+    /// Takes effect for command buffers submitted after it; submits an upload and waits. Not while the GPU reads the field. Errors:
+    /// badArgument (names the knob).
     Status setQuality(const Quality& quality);
 
     struct State; // of the library's own folders
@@ -306,14 +308,15 @@ public:
         VkFormat format = VK_FORMAT_UNDEFINED;
     };
 
-    /// Errors: badArgument (size, or an effect whose maps the field doesn't hold: named), outOfMemory, missingFeature, deviceFailure.
+    /// Submits to HostVulkan::queue and waits, some times. Errors: badArgument (size, or an effect whose maps the field doesn't hold:
+    /// named), outOfMemory, missingFeature, deviceFailure.
     static Result<IndirectLight> create(const Device& device, const LightField& field, const Desc& desc);
     IndirectLight(IndirectLight&&) noexcept;
     IndirectLight& operator=(IndirectLight&&) noexcept;
     ~IndirectLight();
 
     /// Binds the G-buffer; before the first record and whenever its views change. Not between a record and the end of what it recorded on
-    /// the GPU. Views are not null.
+    /// the GPU: a host that alternates two G-buffers while frames are in flight makes an IndirectLight of each. Views are not null.
     void setInputs(const FrameInputs& inputs);
     /// What moves, from the next recorded frame on; none before the first call. With the effect `temporal`, FrameView::follows =
     /// kFollowsChange while anything moves. Cost: of a pixel grows with the shapes within 16 times their size of its tile; a ray asks every
@@ -391,7 +394,9 @@ struct BakeDesc
     float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // a side of a face of surface light, 26, 52 or 104; 0: none, probes light surfaces
     std::string effects = "auto";                        // as planEffects()
-    const ExactRays* rays = nullptr; // to the scene's triangles, that gather surface light; null: through the light field, on the device
+    // To the scene's triangles, that gather surface light. Null: through the light field, on the device, without lamps, refined texels and
+    // live links.
+    const ExactRays* rays = nullptr;
     uint32_t liveLinks = knobs::liveLinks.value;    // of each surface texel, so that LiveLight moves lights; 0: they stay
     float submissionMs = knobs::submissionMs.value; // that the device is held at once at most, as far as passes can be cut
     bool compact = false; // maps in blocks: 0.4 of their memory, and rays, which unpack them, take longer; without liveLinks and groups

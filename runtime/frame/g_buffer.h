@@ -5,7 +5,8 @@
 namespace sconce
 {
 
-/// A host's G-buffer. All views are of 2D images in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL or GENERAL (say which), of one size. A pixel
+/// A host's G-buffer. All views are of 2D images in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL or GENERAL (say which), of the size
+/// that IndirectLight::Desc names, all of it drawn to; one sample a texel, read as floats, of the depth its depth aspect alone. A pixel
 /// with a number that is NaN, infinite or beyond all sense (over 1000), or a normal of no length, counts as one where nothing was drawn.
 struct FrameInputs
 {

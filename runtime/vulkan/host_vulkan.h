@@ -32,7 +32,8 @@ struct HostVulkan
     std::function<VkResult(const VkSubmitInfo&, VkFence)> submit;
 
     // A host with its own device memory allocator sets both; otherwise vkAllocateMemory and vkFreeMemory are called. By one
-    // Device and those of its forThread() never two at a time.
+    // Device and those of its forThread() never two at a time. What is asked for goes on with its pNext, which holds
+    // VkMemoryAllocateFlagsInfo; the memory is one of its own, from offset 0, which nobody but the library maps.
     std::function<VkResult(const VkMemoryAllocateInfo&, VkDeviceMemory&)> allocateMemory;
     std::function<void(VkDeviceMemory)> freeMemory;
 };
