@@ -166,7 +166,7 @@ def render(results, views, file, name, depth):
     result = results.file(file)
     view = views[file][name]
     header, lines = group_lines(result, view) if "groups" in view else table_lines(result, view, results)
-    numbers = [all(re.match(r"[*\-\d]|$", cells[i]) for cells in lines) for i in range(len(header))]
+    numbers = [all(re.match(r"[*<\-\d]|$", cells[i]) for cells in lines) for i in range(len(header))]
     out = ["| " + " | ".join(header) + " |", "|" + "|".join("---:" if right else "---" for right in numbers) + "|"]
     out += ["| " + " | ".join(cells) + " |" for cells in lines]
     if view.get("caption", True):
