@@ -344,14 +344,14 @@ def orders(arguments):
     rows = {}
     for scene, file in (argument.split("=", 1) for argument in arguments):
         entries = {entry["tracer"].rpartition("order:")[2]: entry for entry in json.loads(Path(file).read_text()) if "order:" in entry["tracer"]}
-        wrong = lambda entry: 1 - entry["right_1"]
+        wrong = lambda entry, right: 1 - entry[right]
         for order, entry in entries.items():
             first = entries["0"]
             rows[slug(f"{scene} {order}")] = {
                 "label": f"{scene}, {entry['probes']} probes: {ORDERS[order]}", "right_1": f"{100 * entry['right_1']:.2f}", "right_02": f"{100 * entry['right_02']:.2f}",
                 "unresolved": f"{100 * entry['unresolved']:.2f}", "reads": of(entry, "distance_reads.mean", 1, 1), "index_reads": of(entry, "index_reads_mean", 1, 1),
-                "handoffs": of(entry, "handoffs_mean", 1, 2), "wrong_times": f"{wrong(entry) / wrong(first):.2f}",
-                "reads_times": f"{entry['distance_reads']['mean'] / first['distance_reads']['mean']:.2f}", "handoffs_times": f"{entry['handoffs_mean'] / first['handoffs_mean']:.2f}"}
+                "handoffs": of(entry, "handoffs_mean", 1, 2), "wrong_times": f"{wrong(entry, 'right_1') / wrong(first, 'right_1'):.2f}",
+                "wrong_02_times": f"{wrong(entry, 'right_02') / wrong(first, 'right_02'):.2f}", "reads_times": f"{entry['distance_reads']['mean'] / first['distance_reads']['mean']:.2f}", "handoffs_times": f"{entry['handoffs_mean'] / first['handoffs_mean']:.2f}"}
     for order in ORDERS:
         own = [row for key, row in rows.items() if key.endswith(f"_{order}") and not key.startswith("all_")]
         rows[f"all_{order}"] = {"label": ORDERS[order]} | {key: least_and_most([row[key] for row in own]) for key in own[0] if key != "label"}
@@ -421,12 +421,16 @@ def placed(arguments):
     steps = [key.removesuffix("_wrong") for key in next(iter(rows.values())) if key.endswith("_wrong")]
     all_, behind = {"label": "all, geometric means over the yardstick's"}, []
     times = lambda row, step, of, key: float(row[f"{step}_{key}"]) / float(row[f"{of}_{key}"])
-    for key in ("wrong", "relmse"):
+    for key in ("wrong", "wrong_02", "relmse"):
         of = [row for row in rows.values() if f"yardstick_{key}" in row]
         all_ |= {f"{step}_{key}": f"{statistics.geometric_mean([times(row, step, 'yardstick', key) for row in of]):.2f}" for step in steps if step != "yardstick"}
-        all_ |= {{"wrong": "scenes", "relmse": "lit"}[key]: str(len(of))}
+        all_ |= {"scenes" if key != "relmse" else "lit": str(len(of))}
     for row in rows.values():
         best = min((step for step in steps if step != "grid"), key=lambda step: float(row[f"{step}_wrong"]))
+        row |= {"of_best": " / ".join(f"{times(row, 'gradient', min((step for step in steps if step != 'grid'), key=lambda step: float(row[f'{step}_{key}'])), key):.2f}"
+                                      for key in ("wrong", "wrong_02"))}
+        if "yardstick_relmse" in row:
+            row |= {"light_of_yardstick": f"{times(row, 'gradient', 'yardstick', 'relmse'):.2f}"}
         unsure = max(float(row["gradient_unsure"]), float(row[f"{best}_unsure"]))
         behind.append((float(row["gradient_wrong"]) - float(row[f"{best}_wrong"])) / unsure)
         for of in ("yardstick", "grid"):

@@ -26,9 +26,8 @@ struct PlanSettings
 
 /// The points of one scene; the first is our default. Ours with every knob; B0, B0+, B0+ with our placement and lists, and W' with their
 /// own curves (probes and resolution), our tracer on the uniform grid likewise; the path tracer at 1 to 64 paths a pixel.
-/// The opponents' octahedral maps have the next power of two of texels a side: 512 where our resolution is 416 (faces of 208), which takes
-/// the same memory. W' reads maps of as many texels, made from cube faces of as many.
-/// Errors: badArgument (names a knob that isn't there).
+/// The opponents' octahedral maps have as many texels as take no more memory than our cube faces. W' reads maps of as many texels, made
+/// from cube faces of as many. Errors: badArgument (names a knob that isn't there).
 Result<std::vector<PlannedPoint>> planPoints(const PlanSettings& settings);
 
 } // namespace sconce

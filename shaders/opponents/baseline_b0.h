@@ -5,7 +5,7 @@
 //   hand-over point                    direction where the run of fine texels began | where the step began
 //   last texel of a segment            may go untested                             | tested
 // One more is left as it is: a step is one texel along the longer axis and may jump a corner of a texel on the shorter one. Visiting every
-// texel that the line touches made B0+ slower and less right (docs/notebook.md).
+// texel that the line touches made B0+ slower and less right.
 // In both, the hit test stands behind the march loops, where it costs the other lanes nothing; its results do not depend on that.
 // Shared text, see shared/probe_trace.h; needs distanceWord, `field` with the octahedral chart, whose info.topLevel is log2 of its low factor, and kBaseline.
 

@@ -28,6 +28,33 @@ step("Configuration of the host" ${CMAKE_COMMAND} -S ${HOST} -B ${WORK}/build -G
 step("Build of the host" ${CMAKE_COMMAND} --build ${WORK}/build --config ${CONFIG})
 step("Run of the host" ${WORK}/build/host ${WORK}/cornell.sconce)
 
+# The same where the host adds the project to its own: the header is the installed one, and nothing of the project is installed with the host. The library
+# is not built once more: the host's file is compiled as its build says.
+step("Configuration of a host that adds the project" ${CMAKE_COMMAND} -S ${HOST} -B ${WORK}/added -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG}
+     -DSCONCE_SOURCE=${SOURCE} -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS} -DKEEP_MODULES=${KEEP_MODULES})
+step("Its header" ${CMAKE_COMMAND} -E compare_files ${WORK}/prefix/include/sconce/sconce.h ${WORK}/added/sconce/include/sconce/sconce.h)
+step("Its shader" glslangValidator --quiet --target-env vulkan1.2 -I${SOURCE}/shaders --vn host_trace -o ${WORK}/added/host_trace.h ${HOST}/host_trace.comp)
+file(READ ${WORK}/added/compile_commands.json commands)
+string(JSON last LENGTH "${commands}")
+math(EXPR last "${last} - 1")
+set(compiled 0)
+foreach(i RANGE ${last})
+    string(JSON file GET "${commands}" ${i} file)
+    if(file STREQUAL "${HOST}/main.cpp")
+        string(JSON command GET "${commands}" ${i} command)
+        step("Its file" sh -c "mkdir -p ${WORK}/added/CMakeFiles/host.dir && cd ${WORK}/added && ${command}")
+        math(EXPR compiled "${compiled} + 1")
+    endif()
+endforeach()
+if(NOT compiled EQUAL 1)
+    message(FATAL_ERROR "${compiled} files of the host's were compiled, not one")
+endif()
+step("Its installation" ${CMAKE_COMMAND} --install ${WORK}/added --config ${CONFIG} --prefix ${WORK}/of_the_host)
+file(GLOB_RECURSE strangers ${WORK}/of_the_host/*)
+if(strangers)
+    message(FATAL_ERROR "A host that adds the project installs ${strangers}")
+endif()
+
 # The same without CMake.
 find_program(PKG_CONFIG pkg-config REQUIRED)
 file(GLOB_RECURSE pc ${WORK}/prefix/*/sconce.pc)
