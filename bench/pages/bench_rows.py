@@ -252,8 +252,9 @@ def knobs(files):
     name, scene = next(iter(scenes.items()))
     ours = [point for point in scene["points"] if point["method"] == "ours" and "error" in point]
     priced = lambda point: {key: value for key, value in figures(point).items() if key in PRICED}
-    default = priced(next(point for point in ours if point["knob"] == "default"))
-    rows, lists = {"default": {"label": "default"} | default}, {}
+    first = next(point for point in ours if point["knob"] == "default")
+    default = priced(first)
+    rows, lists = {"default": {"label": "default"} | default | {"diffuse_unsure": figures(first)["diffuse_unsure"]}}, {}
     for point in ours:
         if point["knob"] != "default":
             own = priced(point)

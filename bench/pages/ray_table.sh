@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Glossy rays of Sconce and of its opponents on Sponza with 54 probes against Embree, at equal memory. Writes bench/results/sponza_rays.json and
-# tracer_targets.json. Environment: SCONCE_SCENES=folder [../shared/scenes], RAYS=n [200000], RUNS=timed runs of a race [12], OUT=folder, whose fields are
+# tracer_targets.json. Environment: SCONCE, ACCURACY=the programs, built when not given, SCONCE_SCENES=folder [../shared/scenes], RAYS=n [200000], RUNS=timed runs of a race [12], OUT=folder, whose fields are
 # kept [out/rays]. Grids stand in the better of two poses, by rays.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 scene=${SCONCE_SCENES:-../shared/scenes}/sponza/Sponza.gltf out=${OUT:-out/rays} count=54
-tools/build.sh release sconce_command sconce_ray_accuracy >&2
-sconce=build/release/tools/sconce race=build/release/bench/race/sconce_ray_accuracy
+[[ -n ${SCONCE:-} && -n ${ACCURACY:-} ]] || tools/build.sh release sconce_command sconce_ray_accuracy >&2
+sconce=${SCONCE:-build/release/tools/sconce} race=${ACCURACY:-build/release/bench/race/sconce_ray_accuracy}
 mkdir -p "$out"
 at=$out/Sponza
 
