@@ -71,6 +71,9 @@ void readSpace(const std::string& text, OpenSpace& open, std::string& walk)
         if (!(*open.ground > 0.0f)) throw CLI::ValidationError("--space", "walk needs a height above 0, as in walk:2.5:mesh.glb");
         if (walk.empty()) throw CLI::ValidationError("--space", "walk needs a height and a mesh, as in walk:2.5:mesh.glb");
     }
+    else if (text.find(',') == std::string::npos)
+        throw CLI::ValidationError(
+            "--space", fmt::format("it can't be '{}'; give auto, enclosed, ground:METRES, walk:METRES:FILE or a box X,Y,Z,X,Y,Z", text));
     else
     {
         const std::vector<float> n = numbers(text, 6);

@@ -306,9 +306,10 @@ struct Gatherer : LightFieldTwin<float>
         return cosine / (light.density + cosine) * light.emission;
     }
 
-    /// Irradiance from lights of no extent.
+    /// Irradiance from lights of no extent, of metals as much of it as they send on.
     vec3 deltaLightAt(const Place& place) const
     {
+        const float lean = grazingOfSurface(place.surface.metallic, place.surface.roughness, 0.0f);
         const vec3 point = (place.position - field.origin) / field.scale + 2.0f * gap / field.scale * place.normal;
         vec3 sum(0.0f);
         for (const GpuLight& light : lights.first(lightsHeader.deltaCount))
@@ -316,7 +317,7 @@ struct Gatherer : LightFieldTwin<float>
             const DeltaLight at = deltaLightAt(light, light.type, point, 2.0f * field.diagonal);
             const float cosine = dot(at.toLight, place.normal);
             if (cosine > 0.0f && luminance(at.irradiance) > 0.0f && emitterReaches(point, at.toLight, at.distance, place.normal))
-                sum += cosine * at.irradiance;
+                sum += cosine * takenAlong(cosine, lean) * at.irradiance;
         }
         return sum;
     }
@@ -359,11 +360,6 @@ struct Gatherer : LightFieldTwin<float>
     }
 
     static constexpr int kTries = 4; // for a direction above the surface
-
-    static uint packGrazing(float grazing)
-    {
-        return uint(255.0f * grazing / kMostGrazing + 0.5f) << 24;
-    }
 
     /// @param reflections  of the ray; more than the colours tell are as many as they do
     uint nearestTint(vec3 tint, int reflections) const
@@ -625,7 +621,8 @@ TriangleGather::TriangleGather(const ExactRays& rays, const FieldData& data, std
 
 float TriangleGather::grazingOf(float metallic, float roughness) const
 {
-    return (1.0f - metallic) * grazings[size_t(roughness * float(grazings.size() - 1) + 0.5f)];
+    const float coat = grazings[size_t(roughness * float(grazings.size() - 1) + 0.5f)];
+    return twin::Gatherer::grazingOfSurface(metallic, roughness, coat);
 }
 
 void TriangleGather::gather(uint32_t probe, const Target& target) const

@@ -94,8 +94,8 @@ public:
                    const Openness& openness = {}) const;
     /// Where the rays of such a place end.
     std::vector<uint32_t> linksAt(vec3 point, vec3 normal, float grazing, uint32_t rays, glm::uvec2 sample) const;
-    /// How much less of light near its plane a surface takes into its diffuse lobe: smooth coats reflect it. See takenAlong() in
-    /// gathered_rays.h; 0 of metals.
+    /// How much less of light near its plane a surface takes into its diffuse lobe, as smooth coats reflect it, or how much more of it a
+    /// rough metal sends on: see takenAlong() in brdf_text.h.
     float grazingOf(float metallic, float roughness) const;
     float offset() const { return 2.0f * gap / field->info.scale; } // field units that points are off their surface
     const Scene& scene() const { return triangles->scene(); }

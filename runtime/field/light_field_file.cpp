@@ -783,6 +783,12 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     return file->commit();
 }
 
+/// Before version 10 the 8 bits of packGrazing() (shaders/shared/gathered_rays.h) were all a coat's.
+void giveGrazingASign(std::span<gpu::LiveTexel> texels)
+{
+    for (gpu::LiveTexel& texel : texels) texel.normal = (texel.normal & 0xffffffu) | ((texel.normal >> 24) * 127u + 127u) / 255u << 24;
+}
+
 /// @param maps  whether distance and radiance are read; else they stay empty, of what can do without: cube faces in light that stays
 Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
 {
@@ -867,6 +873,7 @@ Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
         if (!maps && (section == distance || section == radiance)) continue;
         if (Status status = readInto(section, raw); !status) return status.error();
     }
+    if (table.header.version < kFieldFileVersion) giveGrazingASign(field.live.texels);
     auto word = shares.cbegin();
     for (LightGroup& group : field.groups)
         for (const LightPart& part : kLightParts)

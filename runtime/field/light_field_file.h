@@ -15,14 +15,14 @@ namespace sconce
 
 /// The .sconce format's version that is written, and the oldest that is read; others are refused with a sentence. Version 3 added the
 /// section `prefiltered` and lets `radiance` be empty; version 4 added `patches`. A field with light groups is written as version 7, one
-/// whose lights may move as 8, others as 6, which is the same without their sections; one whose maps are in blocks as 9, with those
-/// of 6.
-inline constexpr uint32_t kFieldFileVersion = 9, kOldestFieldFileVersion = 2;
-inline constexpr uint32_t kLiveFileVersion = 8, kGroupedFileVersion = 7, kUngroupedFileVersion = 6;
+/// whose maps are in blocks as 9, others as 6, which is the same without their sections; one whose lights may move as 10: of version 8 its
+/// texels' grazing had no sign.
+inline constexpr uint32_t kFieldFileVersion = 10, kOldestFieldFileVersion = 2;
+inline constexpr uint32_t kBlocksFileVersion = 9, kGroupedFileVersion = 7, kUngroupedFileVersion = 6;
 inline uint32_t fileVersionOf(const FieldData& field)
 {
-    if (inBlocks(field.info)) return kFieldFileVersion;
-    if (field.live.links > 0) return kLiveFileVersion;
+    if (inBlocks(field.info)) return kBlocksFileVersion;
+    if (field.live.links > 0) return kFieldFileVersion;
     return field.groups.empty() ? kUngroupedFileVersion : kGroupedFileVersion;
 }
 

@@ -188,7 +188,21 @@ SCONCE_PURE real diffuseAlong(real nl, real roughness)
 // What a diffuse lobe under a smooth coat takes of light along a cosine c, over its mean: near 1 + grazing (1/21 - (1 - c)^5), whose mean over the
 // hemisphere, weighted by the cosine, is 1. A fit of diffuseAlong(), off by 0.014 in the mean square where it is worst (roughness 0.3).
 SCONCE_CONST real kMostGrazing = real(1.05);
-SCONCE_PURE real takenAlong(real c, real grazing) { return real(1.0) + grazing * (real(1.0) / real(21.0) - schlick(c)); }
+// Of rough metals, what they send on of it: near 1 + lean ((1 - c)^2 - 1/6), since their lobe's gain is its viewer's side's alone, and what comes steeply leaves
+// to viewers that gain least. Off by 0.023 in the mean square where it is worst (roughness 1). One number says either: grazing, or below 0 a lean.
+SCONCE_CONST real kMostLean = real(1.2);
+SCONCE_PURE real takenAlong(real c, real grazing)
+{
+    real away = real(1.0) - between0And1(c);
+    if (grazing < real(0.0)) return real(1.0) - grazing * (away * away - real(1.0) / real(6.0));
+    return real(1.0) + grazing * (real(1.0) / real(21.0) - fifthPower(away));
+}
+/// A fit to quadratures of metals of base colours 0.5 and 0.9, within 0.06.
+SCONCE_PURE real leanOfRoughness(real roughness)
+{
+    real x = between0And1(roughness - real(0.58));
+    return x * (real(1.6) + real(2.852) * x);
+}
 
 /// The nearest to diffuseAlong() by least squares over the hemisphere, of a surface that is no metal.
 SCONCE_PURE real grazingOfRoughness(real roughness)
@@ -204,6 +218,12 @@ SCONCE_PURE real grazingOfRoughness(real roughness)
         squares += by * by;
     }
     return kMostGrazing * between0And1(sum / (squares * kMostGrazing));
+}
+/// Of a surface; what takenAlong() wants.
+/// @param coat  grazingOfRoughness() of it
+SCONCE_PURE real grazingOfSurface(real metallic, real roughness, real coat)
+{
+    return (real(1.0) - metallic) * coat - metallic * leanOfRoughness(roughness);
 }
 
 /// Both lobes; 0 when either direction is below the surface.

@@ -2,8 +2,16 @@
 // draw the same numbers, so that the order of probes changes nothing, and what a ray brought can be asked for its direction later.
 SCONCE_CONST uint kGatherStream = 6u;
 
-/// A texel's grazing, from 8 bits of its SurfaceTexel::normal.
-SCONCE_PURE real unpackGrazing(uint normal) { return real(normal >> 24) * (kMostGrazing / real(255.0)); }
+/// A texel's grazing, from 8 bits of its SurfaceTexel::normal: a sign, and how much.
+SCONCE_PURE uint packGrazing(real grazing)
+{
+    real most = grazing < real(0.0) ? -kMostLean : kMostGrazing;
+    return (uint(real(127.0) * between0And1(grazing / most) + real(0.5)) | (grazing < real(0.0) ? 128u : 0u)) << 24;
+}
+SCONCE_PURE real unpackGrazing(uint normal)
+{
+    return real((normal >> 24) & 127u) * (((normal >> 31) != 0u ? -kMostLean : kMostGrazing) / real(127.0));
+}
 
 /// The cosine below which a share of all light is taken that comes evenly from the hemisphere: its share is found by Newton's steps.
 SCONCE_PURE real cosineTaken(real share, real grazing)
@@ -13,7 +21,11 @@ SCONCE_PURE real cosineTaken(real share, real grazing)
     {
         real away = real(1.0) - c;
         real sixth = fifthPower(away) * away;
-        real below = c * c + grazing * ((c * c - real(1.0)) / real(21.0) + sixth * (real(1.0) / real(3.0) - away * (real(2.0) / real(7.0))));
+        real below = c * c;
+        if (grazing < real(0.0))
+            below -= grazing * below * (real(5.0) / real(6.0) - c * (real(4.0) / real(3.0) - c * real(0.5)));
+        else
+            below += grazing * ((c * c - real(1.0)) / real(21.0) + sixth * (real(1.0) / real(3.0) - away * (real(2.0) / real(7.0))));
         c = between0And1(c - (below - share) / max(real(2.0) * c * takenAlong(c, grazing), real(0.02)));
     }
     return c;
@@ -23,7 +35,7 @@ SCONCE_PURE real cosineTaken(real share, real grazing)
 SCONCE_FN vec3 gatherDirection(SCONCE_IN(TangentFrame) tangents, uvec2 pixel, uint i, real grazing)
 {
     vec2 lots = pairOfRay(pixel, i, kGatherStream);
-    if (grazing > real(0.0))
+    if (grazing != real(0.0))
     {
         real c = cosineTaken(real(1.0) - lots.x, grazing);
         lots.x = real(1.0) - c * c;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -192,6 +193,57 @@ TEST(Brdf, HemisphericalAlbedoAgreesWithQuadrature)
     EXPECT_NEAR(hemisphericalAlbedo({vec3(0.7f), 0.0f, 1.0f}).x, test::RoughModel({0.7, 0.0}).hemisphericalAlbedo(), 0.002);
     // A mirror's: Schlick's term has the mean 1/21.
     EXPECT_NEAR(hemisphericalAlbedo({vec3(0.5f), 1.0f, 0.0f}).x, 0.5 + 0.5 / 21.0, 1e-4);
+}
+
+// What a metal sends to all sides of light along a cosine, over the mean of all cosines: with the gain on the viewer's side, by quadrature
+// in double.
+TEST(Brdf, RoughMetalsSendOnOfLightAlongACosineWhatTheirLobeDoes)
+{
+    using Exact = Pure<double>;
+    constexpr int kCosines = 24, kAngles = 48;
+    const auto cosineOf = [](int i) { return (i + 0.5) / kCosines; };
+    for (const double base : {0.5, 0.9})
+        for (const double roughness : {0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
+        {
+            const Exact::BrdfSurface metal{glm::dvec3(base), 1.0, roughness};
+            std::vector<double> sent(kCosines, 0.0);
+            double mean = 0.0;
+            for (int l = 0; l < kCosines; ++l)
+            {
+                const glm::dvec3 light(std::sqrt(1.0 - cosineOf(l) * cosineOf(l)), 0.0, cosineOf(l));
+                for (int v = 0; v < kCosines; ++v)
+                    for (int i = 0; i < kAngles; ++i)
+                    {
+                        const double phi = std::numbers::pi * (i + 0.5) / kAngles, sine = std::sqrt(1.0 - cosineOf(v) * cosineOf(v));
+                        const glm::dvec3 view(sine * std::cos(phi), sine * std::sin(phi), cosineOf(v));
+                        sent[size_t(l)] += Exact::evaluateBrdf(metal, glm::dvec3(0, 0, 1), view, light).specular.x * view.z;
+                    }
+                mean += 2.0 * cosineOf(l) / kCosines * sent[size_t(l)];
+            }
+            double squares = 0.0;
+            for (int l = 0; l < kCosines; ++l)
+            {
+                const double c = cosineOf(l), off = Exact::takenAlong(c, -Exact::leanOfRoughness(roughness)) - sent[size_t(l)] / mean;
+                squares += 2.0 * c / kCosines * off * off;
+            }
+            EXPECT_LT(std::sqrt(squares), 0.035) << "base " << base << ", roughness " << roughness;
+        }
+}
+
+// takenAlong() takes nothing away: its mean over the hemisphere, weighted by the cosine, is 1.
+TEST(Brdf, WhatIsTakenAlongCosinesIsAllThereIs)
+{
+    for (const double grazing : {-1.2, -0.4, 0.0, 0.5, 1.05})
+    {
+        double sum = 0.0;
+        constexpr int kSteps = 4000;
+        for (int i = 0; i < kSteps; ++i)
+        {
+            const double c = (i + 0.5) / kSteps;
+            sum += 2.0 * c / kSteps * Pure<double>::takenAlong(c, grazing);
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-6) << grazing;
+    }
 }
 
 TEST(Brdf, FloatAgreesWithDouble)

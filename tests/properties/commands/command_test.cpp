@@ -353,6 +353,24 @@ TEST(Command, PlaceHonoursPinsAndMemory)
     expectSentence(place({"--count", "3"}), 3, "pins.json");
 }
 
+TEST(Command, PlaceTakesTheSpaceThatCounts)
+{
+    const TestFolder folder;
+    const auto place = [&](const std::string& space) {
+        return sconceCommand({"place", "cornell", "-o", folder / "p.json", "--count", "2", "--json", "-q", "--space=" + space});
+    };
+    const json box = jsonOf(place("-0.9,0.1,-0.9,0.9,0.9,0.9"));
+    EXPECT_EQ(box.at("space"), "-0.9,0.1,-0.9,0.9,0.9,0.9");
+    for (const json& probe : json::parse(readText(folder / "p.json")).at("probes")) EXPECT_LT(probe.at("position")[1], 0.9);
+    const json rooms = jsonOf(place("enclosed"));
+    EXPECT_EQ(rooms.at("space"), "enclosed");
+    EXPECT_LT(rooms.at("surface_left_out").get<double>(), box.at("surface_left_out").get<double>());
+    for (const std::string wrong : {"sideways", "ground:", "ground:x", "ground:-1", "walk:0:mesh.glb", "walk:2", "1,2,3"})
+        EXPECT_EQ(place(wrong).exit, 2) << wrong;
+    EXPECT_NE(place("sideways").err.find("--space: it can't be 'sideways'; give auto, enclosed, ground:METRES"), std::string::npos);
+    EXPECT_EQ(place("walk:2:" + (folder / "none.glb")).exit, 5);
+}
+
 // The whole way once, small: place, bake, info, verify, trace, damage.
 TEST(Command, PipelineFromSceneToHits)
 {

@@ -133,12 +133,12 @@ TEST_F(TriangleGathering, EachBounceInASphereIsThePathTracers)
         double lamp, glow; // relative error allowed, with the point light and where the walls glow
     };
     const vec3 probe(0.3f, 0.2f, 0.1f);
-    // SHORT: 0.01 is aimed at for each. Half-metals reflect rays more often than is counted (gpu::kReflectionsCounted). What metals send of
-    // a point light is what they would of light from all sides (bake_surface.comp); a rough metal, whose gain is its viewer's side's alone
-    // (brdf_text.h), sends a quarter less of light that falls steeply.
+    // SHORT: 0.01 is aimed at for each. Half-metals reflect rays more often than is counted (gpu::kReflectionsCounted). Of light that falls
+    // steeply a rough metal sends a quarter less than of light from all sides: its gain is its viewer's side's alone. leanOfRoughness()
+    // (brdf_text.h) leaves 0.03 of that.
     for (const Surface& surface : {Surface{0.7f, 0.0f, 1.0f, 0.01, 0.01},
-                                   {0.7f, 0.5f, 0.5f, 0.018, 0.015},
-                                   {0.9f, 1.0f, 1.0f, 0.32, 0.01},
+                                   {0.7f, 0.5f, 0.5f, 0.02, 0.015},
+                                   {0.9f, 1.0f, 1.0f, 0.035, 0.01},
                                    {0.7f, 0.0f, 0.15f, 0.01, 0.01}})
         for (const bool glows : {false, true})
         {

@@ -169,7 +169,7 @@ TEST_F(LightFieldFile, MapsInBlocksComeBackWholeAndProbeByProbe)
     const Result<FieldData> back = loadField(file);
     ASSERT_TRUE(back) << back.error().message;
     expectSame(*back, field);
-    EXPECT_EQ(back->fileVersion, kFieldFileVersion);
+    EXPECT_EQ(back->fileVersion, kBlocksFileVersion);
     auto opened = openField(file);
     ASSERT_TRUE(opened) << opened.error().message;
     std::vector<uint32_t> distance(opened->maps.distanceWords()), radiance(opened->maps.radianceWords());

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include "runtime/bake/group_bake.h"
 #include "runtime/field/light_field.h"
@@ -532,6 +535,32 @@ TEST_F(LiveLightTest, RaysAndGroupsFollow)
 }
 
 // A static field has none of it, and says so; a live one is read as it was written, and a link that leads nowhere is damage.
+// Of version 8 all 8 bits of a texel's grazing were a coat's; now one of them says that it is a metal's lean.
+TEST_F(LiveLightTest, AFileWhoseGrazingHasNoSignIsRead)
+{
+    const testing_support::TestFolder folder;
+    const std::string file = folder / "older.sconce";
+    FieldData field = room();
+    for (size_t i = 0; i < field.live.texels.size(); ++i)
+        field.live.texels[i].normal = (field.live.texels[i].normal & 0xffffffu) | uint32_t(i % 256) << 24;
+    ASSERT_TRUE(saveField(field, file));
+    std::string bytes = testing_support::readText(file);
+    bytes[8] = 8;
+    const uint64_t sum = XXH3_64bits(bytes.data(), 32);
+    std::memcpy(bytes.data() + 32, &sum, 8);
+    std::memcpy(bytes.data() + bytes.size() - 16, &sum, 8); // the footer has it again
+    testing_support::writeText(file, bytes);
+    const Result<FieldData> older = loadField(file);
+    ASSERT_TRUE(older) << older.error().message;
+    ASSERT_EQ(older->live.texels.size(), field.live.texels.size());
+    for (size_t i = 0; i < field.live.texels.size(); ++i)
+    {
+        const uint32_t before = field.live.texels[i].normal, after = older->live.texels[i].normal;
+        EXPECT_EQ(before & 0xffffffu, after & 0xffffffu);
+        EXPECT_NEAR(double(after >> 24) / 127.0, double(i % 256) / 255.0, 0.51 / 127.0) << i; // no lean: that would be 128 and more
+    }
+}
+
 TEST_F(LiveLightTest, FilesAndFieldsWithout)
 {
     const testing_support::TestFolder folder;
@@ -539,7 +568,7 @@ TEST_F(LiveLightTest, FilesAndFieldsWithout)
     ASSERT_TRUE(saveField(room(), file));
     const auto read = loadField(file);
     ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->fileVersion, 8u);
+    EXPECT_EQ(read->fileVersion, 10u);
     EXPECT_EQ(read->live.texelLinks, room().live.texelLinks);
     EXPECT_EQ(read->live.placeLinks, room().live.placeLinks);
     EXPECT_EQ(read->live.albedo, room().live.albedo);
