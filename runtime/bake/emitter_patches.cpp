@@ -35,7 +35,6 @@ Lanes dot(const Vectors& a, glm::vec3 b)
 Lanes takenAlong(Lanes cosine, float grazing)
 {
     const Lanes one = Lanes{} + 1.0f, away = one - (cosine < one ? cosine : one), squared = away * away;
-    if (grazing < 0.0f) return 1.0f - grazing * (squared - 1.0f / 6.0f);
     return 1.0f + grazing * (1.0f / 21.0f - squared * squared * away);
 }
 
@@ -78,7 +77,7 @@ void EmitterPatches::weigh(glm::vec3 point, glm::vec3 normal, glm::vec3 plane, f
         const Lanes along = dot(to, normal), above = along < none ? none : along;
         Lanes cosine = dot(to, plane) > none ? above : none;
         cosine = d2 < near * area ? none : cosine;
-        if (grazing != 0.0f) cosine *= takenAlong(cosine, grazing);
+        if (grazing > 0.0f) cosine *= takenAlong(cosine, grazing);
         cosine *= luminous;
         std::memcpy(&weights[i], &cosine, sizeof cosine);
     }

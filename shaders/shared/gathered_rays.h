@@ -21,21 +21,17 @@ SCONCE_PURE real cosineTaken(real share, real grazing)
     {
         real away = real(1.0) - c;
         real sixth = fifthPower(away) * away;
-        real below = c * c;
-        if (grazing < real(0.0))
-            below -= grazing * below * (real(5.0) / real(6.0) - c * (real(4.0) / real(3.0) - c * real(0.5)));
-        else
-            below += grazing * ((c * c - real(1.0)) / real(21.0) + sixth * (real(1.0) / real(3.0) - away * (real(2.0) / real(7.0))));
+        real below = c * c + grazing * ((c * c - real(1.0)) / real(21.0) + sixth * (real(1.0) / real(3.0) - away * (real(2.0) / real(7.0))));
         c = between0And1(c - (below - share) / max(real(2.0) * c * takenAlong(c, grazing), real(0.02)));
     }
     return c;
 }
 
-/// Weighted by the cosine about the tangents' normal, and by what is taken of light along it.
+/// Weighted by the cosine about the tangents' normal, and by what a coat takes of light along it. Metals' light is kept as it arrives, for hosts that ask for it.
 SCONCE_FN vec3 gatherDirection(SCONCE_IN(TangentFrame) tangents, uvec2 pixel, uint i, real grazing)
 {
     vec2 lots = pairOfRay(pixel, i, kGatherStream);
-    if (grazing != real(0.0))
+    if (grazing > real(0.0))
     {
         real c = cosineTaken(real(1.0) - lots.x, grazing);
         lots.x = real(1.0) - c * c;

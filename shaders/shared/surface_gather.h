@@ -110,7 +110,7 @@ SCONCE_FN void addEmitters(SCONCE_INOUT(Gathered) to, vec3 point, vec3 normal, v
 /// What a texel gets straight from emitters and sky, and where its other light comes from: of rays that leave the scene the sky's light, of the others
 /// the texel where each ended, kept by keepLink(i, link), so that bounces need no ray.
 /// @param plane    unit normal of the surface; `normal`: that light is gathered about
-/// @param grazing  of the surface, see takenAlong(); 0: light counts alike from all sides
+/// @param grazing  of the surface, see takenAlong(); 0, and a metal's lean: light counts alike from all sides
 SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel, real grazing)
 {
     TangentFrame tangents = tangentFrame(normal);
@@ -161,7 +161,7 @@ SCONCE_FN Gathered gatherAt(vec3 point, vec3 normal, vec3 plane, uvec2 pixel, re
     got.tilt = slopes / rays;
     got.room = real(gatherRays()) / max(nearness, real(1e-6));
     got.reach = max(ended, real(1.0)) / max(nearness, real(1e-6));
-    if (lightsHeader.emitterCount > 0u) addEmitters(got, point, normal, plane, pixel, grazing);
+    if (lightsHeader.emitterCount > 0u) addEmitters(got, point, normal, plane, pixel, max(grazing, real(0.0)));
     got.light = vec3(field.sky) * (sky / rays) + got.emitters;
     return got;
 }

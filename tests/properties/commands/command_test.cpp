@@ -730,7 +730,7 @@ TEST(Command, LightsMoveAfterTheBake)
                               "64", "--surface-texels", "26", "--surface-rays", "16", "-o", folder / "f.sconce", "--json"}));
     EXPECT_EQ(live["live_links"], 8);
     EXPECT_EQ(live["live_lights"], json::array({"bulb"}));
-    EXPECT_EQ(live["format_version"], 8);
+    EXPECT_EQ(live["format_version"], 10);
     EXPECT_NE(sconceCommand({"info", folder / "f.sconce"}).out.find("live: 8 links a texel"), std::string::npos);
 
     // Captured, the same is dark until it is lit, by those lights if told nothing else: to the byte the bake.

@@ -158,7 +158,8 @@ TEST_F(PublicRoomTest, IrradianceAtTheProbesIsThePathTracers)
     // What others would have there, filled by the path tracer.
     for (const Volume volume : {Volume::ddgi, Volume::sh})
     {
-        const auto filled = irradianceVolume(bareGrid(scene, kProbes), volume, rays, {.rays = 4096, .bounces = kInteractions - 1}, {});
+        const auto filled =
+            irradianceVolume(bareGrid(scene, kProbes), volume, rays, {.rays = 32768, .bounces = kInteractions - 1, .relocate = false}, {});
         ASSERT_TRUE(filled) << filled.error().message;
         Range range;
         const uint32_t words = volumeWordsPerProbe(volume);
