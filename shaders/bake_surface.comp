@@ -48,7 +48,8 @@ void main()
 
     vec3 albedo = unpackRootOfColor(seen.x);
     float straight = seenTogether(seen.y) * (kCoatsByRays ? seenToAllSides(seen.y) : 1.0);
-    vec3 irradiance = straight * deltaLight(p, shading, geometric, kCoatsByRays ? seenGrazing(seen.y) : 0.0);
+    float grazing = seenGrazing(seen.y);
+    vec3 irradiance = straight * deltaLight(p, shading, geometric, kCoatsByRays ? grazing : min(grazing, 0.0)); // a metal's lean needs no rays
     if (kAreaLight) irradiance += areaLight(p, shading, geometric);
     push.radiance.word[index] = packRadiance(emission + albedo * irradiance / kBrdfPi);
     if (!isNull(push.emitted)) push.emitted.word[index] = seen.w;

@@ -125,7 +125,7 @@ vec3 directLightOf(uint kind, uint i, vec3 p, vec3 shadingNormal, vec3 geometric
     return max(dot(shadingNormal, s.toLight), 0.0) * s.irradiance;
 }
 
-/// Irradiance of a surface from lights of no extent, W/m^2, as much as its diffuse lobe takes: see takenAlong().
+/// Irradiance of a surface from lights of no extent, W/m^2, as much as its diffuse lobe takes, or a rough metal sends on: see takenAlong().
 vec3 deltaLight(vec3 p, vec3 shadingNormal, vec3 geometricNormal, float grazing)
 {
     vec3 sum = vec3(0.0);

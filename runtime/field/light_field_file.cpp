@@ -873,7 +873,7 @@ Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
         if (!maps && (section == distance || section == radiance)) continue;
         if (Status status = readInto(section, raw); !status) return status.error();
     }
-    if (table.header.version < kFieldFileVersion) giveGrazingASign(field.live.texels);
+    if (table.header.version < kLiveFileVersion) giveGrazingASign(field.live.texels);
     auto word = shares.cbegin();
     for (LightGroup& group : field.groups)
         for (const LightPart& part : kLightParts)

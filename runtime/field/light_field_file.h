@@ -18,11 +18,11 @@ namespace sconce
 /// whose maps are in blocks as 9, others as 6, which is the same without their sections; one whose lights may move as 10: of version 8 its
 /// texels' grazing had no sign.
 inline constexpr uint32_t kFieldFileVersion = 10, kOldestFieldFileVersion = 2;
-inline constexpr uint32_t kBlocksFileVersion = 9, kGroupedFileVersion = 7, kUngroupedFileVersion = 6;
+inline constexpr uint32_t kLiveFileVersion = 10, kBlocksFileVersion = 9, kGroupedFileVersion = 7, kUngroupedFileVersion = 6;
 inline uint32_t fileVersionOf(const FieldData& field)
 {
     if (inBlocks(field.info)) return kBlocksFileVersion;
-    if (field.live.links > 0) return kFieldFileVersion;
+    if (field.live.links > 0) return kLiveFileVersion;
     return field.groups.empty() ? kUngroupedFileVersion : kGroupedFileVersion;
 }
 

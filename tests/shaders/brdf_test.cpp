@@ -226,7 +226,7 @@ TEST(Brdf, RoughMetalsSendOnOfLightAlongACosineWhatTheirLobeDoes)
                 const double c = cosineOf(l), off = Exact::takenAlong(c, -Exact::leanOfRoughness(roughness)) - sent[size_t(l)] / mean;
                 squares += 2.0 * c / kCosines * off * off;
             }
-            EXPECT_LT(std::sqrt(squares), 0.037) << "base " << base << ", roughness " << roughness;
+            EXPECT_LT(std::sqrt(squares), roughness < 0.65 ? 0.037 : 0.030) << "base " << base << ", roughness " << roughness;
         }
 }
 

@@ -361,7 +361,13 @@ TEST(Command, PlaceTakesTheSpaceThatCounts)
     };
     const json box = jsonOf(place("-0.9,0.1,-0.9,0.9,0.9,0.9"));
     EXPECT_EQ(box.at("space"), "-0.9,0.1,-0.9,0.9,0.9,0.9");
-    for (const json& probe : json::parse(readText(folder / "p.json")).at("probes")) EXPECT_LT(probe.at("position")[1], 0.9);
+    constexpr double kLow[] = {-0.9, 0.1, -0.9}, kHigh[] = {0.9, 0.9, 0.9};
+    for (const json& probe : json::parse(readText(folder / "p.json")).at("probes"))
+        for (size_t axis = 0; axis < 3; ++axis)
+        {
+            EXPECT_GE(probe.at("position")[axis], kLow[axis]);
+            EXPECT_LE(probe.at("position")[axis], kHigh[axis]);
+        }
     const json rooms = jsonOf(place("enclosed"));
     EXPECT_EQ(rooms.at("space"), "enclosed");
     EXPECT_LT(rooms.at("surface_left_out").get<double>(), box.at("surface_left_out").get<double>());

@@ -274,6 +274,21 @@ TEST_F(LiveLightTest, PrefilteredLightOfAMetalIsTheStaticBakes)
     EXPECT_NEAR(ratio, 1.0, 0.05);
 }
 
+// Of a bulb that moves rough metals send on as much less as of one that stays: takenAlong() of their lean, which texels keep with a sign.
+TEST_F(LiveLightTest, RoughMetalsSendOnOfALiveBulbWhatTheyDoOfAStaticOne)
+{
+    Scene scene = closedBox(0.8f);
+    for (Material& material : scene.materials) material.metallic = 1.0f, material.roughness = 1.0f;
+    const std::vector<vec3> probes{{-0.3f, 1.4f, 0.2f}};
+    const auto still = baked(scene, 0, {}, probes), live = baked(scene, 64, {}, probes);
+    ASSERT_TRUE(still && live);
+    const double light = meanLight(*live) / meanLight(*still), radiance = meanRadiance(*live) / meanRadiance(*still);
+    RecordProperty("light", std::to_string(light));
+    RecordProperty("radiance", std::to_string(radiance));
+    EXPECT_NEAR(light, 1.0, 0.03);
+    EXPECT_NEAR(radiance, 1.0, 0.03);
+}
+
 // In a closed room that reflects a share of all light everywhere, what bounces is that share of what is there (Sumpner 1892): direct light
 // over one minus the share, without it. Over 4,000 bounces, in 500 frames in each of which something is lit anew, it neither grows nor
 // drifts.
@@ -534,7 +549,6 @@ TEST_F(LiveLightTest, RaysAndGroupsFollow)
     for (int side = 0; side < 2; ++side) EXPECT_NEAR(sum[side], both[side], 0.03 * both[side]);
 }
 
-// A static field has none of it, and says so; a live one is read as it was written, and a link that leads nowhere is damage.
 // Of version 8 all 8 bits of a texel's grazing were a coat's; now one of them says that it is a metal's lean.
 TEST_F(LiveLightTest, AFileWhoseGrazingHasNoSignIsRead)
 {
@@ -561,6 +575,7 @@ TEST_F(LiveLightTest, AFileWhoseGrazingHasNoSignIsRead)
     }
 }
 
+// A static field has none of it, and says so; a live one is read as it was written, and a link that leads nowhere is damage.
 TEST_F(LiveLightTest, FilesAndFieldsWithout)
 {
     const testing_support::TestFolder folder;
