@@ -50,7 +50,7 @@ def off(pixels, truth, width, height, floor):
     colours = []
     for ours, theirs in zip(blurred(pixels), blurred(truth)):
         k = math.log((ours + floor) / (theirs + floor)) / math.log(LARGEST) if theirs > 0 or ours > 0 else 0.0
-        fade = round(255 * (1 - min(1.0, abs(k)))) & 0xF8
+        fade = 255 - (round(255 * min(1.0, abs(k))) & 0xF8)
         colours.append((255, fade, fade) if k > 0 else (fade, fade, 255))
     picture = Image.new("RGB", (width, height))
     picture.putdata(colours)
