@@ -45,6 +45,7 @@ public:
         for (size_t i = 0; i < partOf.size(); ++i) parts += partOf[i] == i;
         spread(std::max(count, uint32_t(std::min<size_t>(most, kSamplesOfALamp * parts))));
         keepPower(most);
+        placeLight();
         list.header.emitterCount += uint32_t(sampled.size());
         for (size_t i = 0; i < sampled.size(); ++i) list.lights[first + i].area = float(emitters[sampled[i]].patch);
         for (size_t i = 0; i < emitters.size(); ++i)
@@ -86,7 +87,8 @@ private:
         }
     }
 
-    void add(size_t number, vec3 point)
+    /// @param share  of the triangle's corners in the point
+    void add(size_t number, vec3 point, vec3 share)
     {
         const Emitter& emitter = emitters[number];
         gpu::GpuLight light{};
@@ -99,6 +101,34 @@ private:
         light.shadowLayer = kNoShadowMap;
         list.lights.push_back(light);
         sampled.push_back(number);
+        shares.push_back(share);
+    }
+
+    /// Puts the light of emitters that aren't alike all over, of textures and holes, where it is: each sample has what its own point emits,
+    /// all of a triangle together what the triangle does.
+    void placeLight()
+    {
+        std::vector<double> carried(emitters.size(), 0.0);
+        std::vector<uint32_t> count(emitters.size(), 0);
+        std::vector<vec3> shown(sampled.size());
+        for (size_t i = 0; i < sampled.size(); ++i)
+        {
+            const uint32_t triangle = emitters[sampled[i]].triangle, index = scene.triangleMaterial[triangle];
+            const Material& material = scene.materials[index];
+            if (!material.blended && material.alphaCutoff <= 0.0f && material.emissionTexture.image < 0) continue;
+            const uvec3 corner = scene.triangles[triangle];
+            const vec2 uv = shares[i].x * scene.uvs[corner.x] + shares[i].y * scene.uvs[corner.y] + shares[i].z * scene.uvs[corner.z];
+            shown[i] = coverage(scene, index, uv) * evaluateMaterial(scene, index, uv).emission;
+            carried[sampled[i]] += double(luminance(shown[i]));
+            ++count[sampled[i]];
+        }
+        for (size_t i = 0; i < sampled.size(); ++i)
+        {
+            const size_t number = sampled[i];
+            if (!(carried[number] > 0.0)) continue; // alike all over, or all of its samples are in holes
+            list.lights[first + i].intensity =
+                shown[i] * float(count[number] * double(luminance(emitters[number].emission)) / carried[number]);
+        }
     }
 
     /// In strata of the scene's order.
@@ -125,7 +155,8 @@ private:
             const float root = std::sqrt(std::clamp(along, 0.0f, 1.0f)), across = radicalInverse(i + 1, 2);
             const vec3 a = scene.positions[corner.x], b = scene.positions[corner.y], c = scene.positions[corner.z];
             // Osada et al. 2002, uniform in a triangle
-            add(size_t(&emitter - emitters.data()), (1.0f - root) * a + root * (1.0f - across) * b + root * across * c);
+            const vec3 share(1.0f - root, root * (1.0f - across), root * across);
+            add(size_t(&emitter - emitters.data()), share.x * a + share.y * b + share.z * c, share);
         }
     }
 
@@ -151,7 +182,8 @@ private:
             Part& part = parts[partOf[i]];
             if (part.carried > 0.0) continue;
             const uvec3 corner = scene.triangles[emitters[part.brightest].triangle];
-            add(part.brightest, (scene.positions[corner.x] + scene.positions[corner.y] + scene.positions[corner.z]) / 3.0f);
+            add(part.brightest, (scene.positions[corner.x] + scene.positions[corner.y] + scene.positions[corner.z]) / 3.0f,
+                vec3(1.0f / 3.0f));
             part.carried = emitters[part.brightest].carried();
         }
         double carried = 0.0;
@@ -169,6 +201,7 @@ private:
     std::vector<uint32_t> partOf;  // the first emitter that each hangs together with
     std::vector<Outside> outside;
     std::vector<size_t> sampled; // emitter of each sample
+    std::vector<vec3> shares;    // of each sample: its triangle's corners' in it
     double power = 0.0, area = 0.0;
 };
 

@@ -241,6 +241,38 @@ TEST_F(TriangleGathering, AMirrorThrowsLightOn)
     EXPECT_NEAR(sum / truth, 1.0, 0.04); // the black wall itself reflects 4 %, which the mirror sends back
 }
 
+// Of a lamp three quarters of which alpha cuts out, a floor gets what the quarter gives that is there.
+TEST_F(TriangleGathering, AMaskedLampGivesTheLightOfWhatIsThere)
+{
+    constexpr float kHalf = 0.5f; // texture coordinates are metres
+    constexpr uint32_t kSide = 64;
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.box(vec3(-6.0f, -0.2f, -6.0f), vec3(6.0f, 0.0f, 6.0f), mesh.material("black", vec3(0.0f), 1.0f));
+    const uint32_t lamp = mesh.emitter("lamp", vec3(10.0f));
+    mesh.quad({-kHalf, 1.5f, -kHalf}, {kHalf, 1.5f, -kHalf}, {kHalf, 1.5f, kHalf}, {-kHalf, 1.5f, kHalf}, lamp);
+    Image image{"quarter", kSide, kSide, std::vector<uint8_t>(kSide * kSide * 4, 255)};
+    for (uint32_t y = 0; y < kSide; ++y)
+        for (uint32_t x = 0; x < kSide; ++x) image.rgba[(y * kSide + x) * 4 + 3] = x < kSide / 2 && y < kSide / 2 ? 255 : 0;
+    scene.images.push_back(std::move(image));
+    scene.materials[lamp].baseColorTexture.image = 0;
+    scene.materials[lamp].alphaCutoff = 0.5f;
+    const vec3 middle(-0.5f * kHalf, 1.5f, -0.5f * kHalf);
+    for (const std::string_view gather : knobs::kGathers)
+    {
+        double sum = 0.0, truth = 0.0;
+        for (const Texel& texel : texelsOf(bake(scene, {vec3(1.2f, 0.8f, 0.3f)}, 0, gather), 0))
+        {
+            if (texel.normal.y < 0.99f || std::hypot(texel.position.x, texel.position.z) > 2.0f) continue;
+            sum += texel.light.g;
+            truth += 10.0 * testing_support::fromSquareLamp(middle, 0.5f * kHalf, texel.position, texel.normal);
+        }
+        ASSERT_GT(truth, 0.0);
+        RecordProperty(std::string(gather), std::to_string(sum / truth));
+        EXPECT_NEAR(sum / truth, 1.0, 0.01) << gather;
+    }
+}
+
 // A smooth dielectric's coat reflects light along its plane, so that its diffuse lobe takes less of it, and more of what falls steeply.
 TEST_F(TriangleGathering, SmoothDielectricsTakeLessOfGrazingLight)
 {
