@@ -19,7 +19,9 @@ set(shared_headers brdf brdf_text chart color distance_block face_chain face_mar
     probe_trace pure_text radiance_block ray_query ray_state refined sample_pair surface_light texel)
 list(TRANSFORM shared_headers REPLACE "(.+)" "shaders/shared/\\1.h")
 install(FILES ${shared_headers} DESTINATION ${headers}/shaders/shared COMPONENT library)
-install(FILES shaders/light_field.glsl shaders/lamps.glsl shaders/probe_face.glsl DESTINATION ${headers}/shaders COMPONENT library)
+set(glsl sconce sconce_frame sconce_probe_face host_names host_names_end light_field lamps probe_face) # hosts include the first three
+list(TRANSFORM glsl REPLACE "(.+)" "shaders/\\1.glsl")
+install(FILES ${glsl} DESTINATION ${headers}/shaders COMPONENT library)
 
 configure_package_config_file(cmake/sconce-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/sconce-config.cmake INSTALL_DESTINATION ${package}
     PATH_VARS CMAKE_INSTALL_INCLUDEDIR)

@@ -1,4 +1,4 @@
-// What a host's own shader includes to ask the light field: queryRay() traces a ray, irradianceAt() reads prefiltered light.
+// The light field in a shader: queryRay() traces a ray, irradianceAt() reads prefiltered light. Hosts include it by sconce.glsl, which tells its names apart.
 // SCONCE_GLSL_VERSION rises whenever what a host may have written against it no longer means the same.
 // Define SCONCE_FIELD_SET to the descriptor set that LightField::descriptorSet() is bound to (0 when undefined).
 #extension GL_GOOGLE_include_directive : require
@@ -68,11 +68,11 @@ uint mapSlot(uint probe) // in the field even of maps that aren't there, which n
     return slot == kNoProbe ? 0u : slot;
 }
 #ifdef SCONCE_ASKS_FOR_MAPS
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SconceAsked { uint word[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SconceMapsAsked { uint word[]; };
 void askForMaps(uint probe)
 {
     if (!streams()) return;
-    if ((gl_LocalInvocationIndex & 7u) == 0u) atomicAdd(SconceAsked(askedAddress).word[probe], 1u);
+    if ((gl_LocalInvocationIndex & 7u) == 0u) atomicAdd(SconceMapsAsked(askedAddress).word[probe], 1u);
 }
 #else
 void askForMaps(uint probe) {}

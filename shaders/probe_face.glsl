@@ -1,4 +1,4 @@
-// What a probe's texel shows, as a fragment shader that draws a probe's face writes it, a host's too (runtime/bake/probe_faces.h): one 4 x 32-bit texel
+// What a probe's texel shows, as a fragment shader that draws a probe's face writes it, a host's too, by sconce_probe_face.glsl (runtime/bake/probe_faces.h): one 4 x 32-bit texel
 //   x  root of the surface's hemispherical albedo, 3 x 10 bits
 //   y  shading normal, octahedral, 2 x 8 bits; of light straight from lights, the share that many normals leave and shareToAllSides(), 2 x 6 bits; the
 //      grazing of takenAlong(), 4 bits: 12 steps of coats, 4 of metals

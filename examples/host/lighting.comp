@@ -51,10 +51,10 @@ void main()
         vec3 point = world.xyz / world.w, view = normalize(eye - point);
         vec4 normalRoughness = texelFetch(normalsRoughness, at, 0), base = texelFetch(baseColorsMetallic, at, 0);
         vec3 normal = normalRoughness.xyz;
-        BrdfSurface surface = BrdfSurface(base.rgb, base.a, normalRoughness.w);
+        SconceBrdfSurface surface = SconceBrdfSurface(base.rgb, base.a, normalRoughness.w);
         float nv = dot(normal, view);
         // The library's reflection model, so that a surface answers the sun as it answers all other light.
-        BrdfValue value = evaluateLobes(lobesAt(surface, nv), surface.roughness, normal, view, toSun);
+        SconceBrdfValue value = sconceEvaluateLobes(sconceLobesAt(surface, nv), surface.roughness, normal, view, toSun);
         float nl = max(dot(normal, toSun), 0.0);
         direct = texelFetch(emissions, at, 0).rgb + nl * sunSeen(point, normal) * sunIrradiance * (value.diffuse + value.specular);
         indirectLight(at, surface, nv, made, raysBelow, scattered, reflected);

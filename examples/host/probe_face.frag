@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "material.glsl"
-#include "probe_face.glsl"
+#include "sconce_probe_face.glsl"
 
 // What a probe sees, by this host's materials. Drawn by gbuffer.vert.
 layout(location = 0) in vec3 fromProbe;

@@ -1,10 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "light_field.glsl"
-#include "lamps.glsl"
+#include "sconce.glsl"
 #include "ask.h"
 #if SCONCE_GLSL_VERSION != 1
-#error "written for version 1 of light_field.glsl: read its change note"
+#error "written for version 1 of sconce.glsl: read its change note"
 #endif
 
 // A shader of a host that asks the light field what it wants to know: irradiance, a ray, and whether light reaches a point. The field's set is bound
@@ -17,13 +16,13 @@ void main()
 {
     Answer a;
     a.arriving = vec3(-1.0);
-    if (field.surfaceSize > 0u)
+    if (sconceField.surfaceSize > 0u)
         a.arriving = sconceLightAt(question.point, question.normal, question.normal) + sconceLampLightAt(question.point, question.normal, question.normal);
     a.reflected = sconceIrradianceAt(question.point, question.normal);
 
     // Rays start a little off their surface.
-    vec3 start = question.point + 1e-4 * field.diagonal * field.scale * question.normal;
-    RayHit hit = sconceQuery(start, question.direction, question.normal);
+    vec3 start = question.point + 1e-4 * sconceField.diagonal * sconceField.scale * question.normal;
+    SconceRayHit hit = sconceQuery(start, question.direction, question.normal);
     a.status = hit.status;
     a.distance = hit.t;
     a.place = hit.position;
@@ -32,6 +31,6 @@ void main()
 
     vec3 to = question.light - start;
     float away = max(length(to), 1e-6);
-    a.reaches = dot(to, question.normal) > 0.0 && lightReaches(start, to / away, away, question.normal) ? 1u : 0u;
+    a.reaches = dot(to, question.normal) > 0.0 && sconceLightReaches(start, to / away, away, question.normal) ? 1u : 0u;
     AnswerAt(question.answer).answer = a;
 }

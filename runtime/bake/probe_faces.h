@@ -26,7 +26,8 @@ struct ProbeFace
 
 /// Draws what probes see by a host's own renderer, with its geometry, materials and level of detail, where a bake would draw the scene.
 /// Pipelines are for the two formats above: depth test and write, VK_COMPARE_OP_GREATER, viewport and scissor dynamic. The fragment shader
-/// writes sconceProbeTexel() of shaders/probe_face.glsl; the vertex shader gl_Position = clipFromRelative * vec4(position - centre, 1).
+/// writes sconceProbeTexel() of shaders/sconce_probe_face.glsl; the vertex shader gl_Position = clipFromRelative * vec4(position - centre,
+/// 1).
 ///
 /// The scene that is baked has still to be described: its triangles are what rays that gather light meet, its lamps, lights and sky what
 /// lights, and what is drawn shines only where some material of it does.

@@ -29,7 +29,7 @@ struct Quality
 
 /// A named choice of every knob but the number of probes, with what it was measured to cost (docs/accuracy.md). A host bakes with the first
 /// three (and with radiance, where `tracedDiffuse`), loads its LightField with `quality`, and draws with the rest: `glossyRays` and
-/// `raysBelow` are FrameView's, `raysBelow` goes to composeIndirect(), too, and `areaSamples` is of the command's frames alone.
+/// `raysBelow` are FrameView's, `raysBelow` goes to sconceComposeIndirect(), too, and `areaSamples` is of the command's frames alone.
 struct QualityLevel
 {
     std::string_view name;  // mobile, draft, low, medium, high, reference
