@@ -90,10 +90,18 @@ std::string otherField(const LightField& field, const FieldData& data, const std
 
 Result<LightGroups> LightGroups::load(const Device& device, const LightField& field, const std::filesystem::path& file)
 {
+    const auto make = [&](const FieldData& data) -> Result<LightGroups>
+    {
+        if (std::string fault = otherField(field, data, file); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
+        return makeLightGroups(device.gpu(), field, data);
+    };
+    if (field.state().maps) // the stream reads their shares
+    {
+        const auto opened = openField(file);
+        return opened ? make(opened->field) : Result<LightGroups>(opened.error());
+    }
     const auto data = loadField(file);
-    if (!data) return data.error();
-    if (std::string fault = otherField(field, *data, file); !fault.empty()) return Error{ErrorCode::badArgument, std::move(fault)};
-    return makeLightGroups(device.gpu(), field, *data);
+    return data ? make(*data) : Result<LightGroups>(data.error());
 }
 
 Result<LiveLight> LiveLight::load(const Device& device, const LightField& field, const std::filesystem::path& file)
@@ -135,6 +143,9 @@ Status bakeLightField(const Device& device, const Scene& scene, std::span<const 
     settings.bounces = desc.bounces;
     settings.converged = desc.converged;
     settings.surfaceTexels = desc.surfaceTexels;
+    settings.surfaceRays = desc.surfaceRays;
+    settings.surfaceRefined = desc.surfaceRefined;
+    settings.lampTexels = desc.lampTexels;
     settings.submissionMs = desc.submissionMs;
     settings.rays = desc.rays;
     settings.faces = desc.faces;

@@ -1,7 +1,7 @@
 #pragma once
 
 // Sconce for hosts: all of the C++ API. Installed as this one file, with what it includes of the library written into it; beside it lie
-// shaders/light_field.glsl and the headers that GLSL and C++ share.
+// shaders/sconce.glsl and its like, for shaders, and the headers that GLSL and C++ share.
 //
 // A host keeps its instance, device, queue and command buffers. What it gets are handles: they keep alive what they need, so that they may
 // be moved, copied where they can be, and destroyed in any order and on any thread, once the GPU has finished with them. Calls on one
@@ -19,6 +19,9 @@
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
+#if defined(GLM_FORCE_QUAT_DATA_WXYZ) || defined(GLM_FORCE_QUAT_CTOR_XYZW)
+#error "sconce.h: quaternions of the library are as GLM has them by default; include it without GLM_FORCE_QUAT_DATA_WXYZ and its like"
+#endif
 
 #include "base/knobs.h"
 #include "base/progress.h"
@@ -76,7 +79,7 @@ private:
     std::shared_ptr<Gpu> shared;
 };
 
-/// A light field on the device: the maps, the octree's 3D texture and the descriptor set that shaders/light_field.glsl expects. A shared
+/// A light field on the device: the maps, the octree's 3D texture and the descriptor set that shaders/sconce.glsl expects. A shared
 /// handle: copies are the same field.
 class LightField
 {
@@ -86,14 +89,13 @@ public:
     /// exceeds), deviceFailure.
     /// @param resident  0: all of it is on the device. Else so many probes' maps, which are nearly all of it, at a time: FieldStream reads
     /// those that
-    ///                  frames ask for; without them light comes from what is known in the open. badArgument where light is in groups or
-    ///                  moves
+    ///                  frames ask for; without them light comes from what is known in the open. badArgument where lights may move
     static Result<LightField> load(const Device& device, const std::filesystem::path& file, const Quality& quality = {},
                                    uint32_t resident = knobs::resident.value);
 
     VkDescriptorSetLayout layout() const;  // for a host's own pipeline layouts, at set SCONCE_FIELD_SET
     VkDescriptorSet descriptorSet() const; // the field's resources
-    /// Values of the first constant ids of a pass that includes shaders/light_field.glsl: `farBounds`, `order`, and whether it holds
+    /// Values of the first constant ids of a pass that includes shaders/sconce.glsl: `farBounds`, `order`, and whether it holds
     /// radiance, are fixed in a pass when it is made.
     std::array<uint32_t, 2> constants() const;
     const gpu::LightFieldInfo& info() const;
@@ -132,7 +134,8 @@ Result<gpu::FrameView> inFieldsWorld(gpu::FrameView view, const mat4& fieldFromH
 /// some. Passes note which probes they would read; a thread reads these from the file, those asked for most first, and record() copies
 /// what it has read to where the maps are that are asked for least, or not at all and are the farthest from the eye. Where a probe's maps
 /// are missing, the next of a place's ranked probes answers, then light that is known in the open: a picture is less sharp for some frames,
-/// and never waits. Move-only; it keeps its light field.
+/// and never waits. Host memory: probesAFrame (framesInFlight + 2) probes' maps, with each light group's share of their radiance.
+/// Move-only; it keeps its light field.
 class FieldStream
 {
 public:
@@ -179,9 +182,11 @@ private:
 class LightGroups
 {
 public:
-    /// Uploads the groups' shares. @param file  that `field` was loaded from
-    /// Errors: as LightField::load(), and badArgument where the file has no groups or is of another field, or the field has LightGroups or
-    /// LiveLight, which switches groups itself.
+    /// Uploads the groups' shares. Of a field that streams those of radiance come with its maps, by a FieldStream that is created after
+    /// this and goes before it.
+    /// @param file  that `field` was loaded from
+    /// Errors: as LightField::load(), and badArgument where the file has no groups or is of another field, or the field has LightGroups,
+    /// LiveLight, which switches groups itself, or a stream.
     static Result<LightGroups> load(const Device& device, const LightField& field, const std::filesystem::path& file);
     LightGroups(LightGroups&&) noexcept;
     LightGroups& operator=(LightGroups&&) noexcept;
@@ -216,7 +221,8 @@ struct LightState
     std::vector<vec3> groups;  // weights of LiveLight::groups(), as LightGroups::set() takes them; empty: as they were baked
 };
 
-/// How much of a field's light a record may make anew.
+/// How much of a field's light a record may make anew. Light in the open, of hidden places and finer texels, and its sum with the groups'
+/// are of the whole field in each record that changes some.
 struct RelightBudget
 {
     uint32_t probes = 0;  // that are lit in one record; 0: all that need it
@@ -331,8 +337,9 @@ public:
     ///               "diffuse fill", "glossy fill", "glossy denoise", "moving shapes", "lamp light"
     void record(VkCommandBuffer cmd, const gpu::FrameView& view, GpuTimer* timer = nullptr) noexcept;
 
-    // An image holds values where a pixel has the term (shaders/shared/frame.h, termsOf) and anything elsewhere; composeIndirect() there
-    // makes a picture of them. RGBA16F, in steps of 6e-8 at least; light beyond gpu::kMostLight, 65,504, is stored as that.
+    // An image holds values where a pixel has the term (sconceTermsOf() of shaders/sconce_frame.glsl) and anything elsewhere;
+    // sconceComposeIndirect() there makes a picture of them. RGBA16F, in steps of 6e-8 at least; light beyond gpu::kMostLight, 65,504, is
+    // stored as that.
     uint32_t made() const;  // bits 1 << gpu::kTermDiffuse... of the terms whose images aren't null
     Output diffuse() const; // rgb cosine-weighted mean of the arriving radiance, without albedo: of all but the host's own lights where it
                             // is read from surface light or traced; else of what surfaces reflect alone: no light straight from emitters or
@@ -393,6 +400,9 @@ struct BakeDesc
     uint32_t bounces = knobs::bounces.value;       // times the baked light is re-injected at most, 0..64; each costs one gather a texel
     float converged = knobs::converged.value; // stop earlier, after a bounce that adds less than this share of all light, 0..1; 0: never
     uint32_t surfaceTexels = knobs::surfaceTexels.value; // a side of a face of surface light, 26, 52 or 104; 0: none, probes light surfaces
+    uint32_t surfaceRays = knobs::surfaceRays.value;     // of each, that gather its light, 1..1024: noise falls with the root, time grows
+    float surfaceRefined = knobs::surfaceRefined.value;  // share of them that are resolved 4 times as finely each way, 0..0.25; with `rays`
+    uint32_t lampTexels = knobs::lampTexels.value;       // a side of the shadow maps of lamps, 512..8192; 0: no lamps; with `rays`
     std::string effects = "auto";                        // as planEffects()
     // To the scene's triangles, that gather surface light. Null: through the light field, on the device, without lamps, refined texels and
     // live links.

@@ -12,7 +12,7 @@ bool isNull(MixWords words) { return uvec2(words) == uvec2(0u); }
 // Live light is the last share.
 uint mixGroups() { return push.groups + (isNull(push.live) ? 0u : 1u); }
 vec3 mixWeight(uint group) { return group < push.groups ? push.weights.value[group] : vec3(1.0); }
-uint mixShare(uint group, uint index) { return group < push.groups ? push.shares.word[group * push.count + index] : push.live.word[index]; }
+uint mixShare(uint group, uint index) { return group < push.groups ? push.shares.word[group * push.stride + index] : push.live.word[index]; }
 
 #include "shared/group_mix.h"
 

@@ -349,6 +349,7 @@ struct OnDevice
     std::optional<OwnDevice> device;
     std::shared_ptr<Gpu> gpu;
     std::optional<LightField> field;
+    std::optional<LightGroups> groups; // of a field that streams, whose maps go on to be mixed; others are dimmed once
     std::optional<FieldStream> stream;
     std::optional<LiveLight> live;
     std::optional<double> groupsMs;
@@ -432,9 +433,12 @@ Status light(OnDevice& on, const Asked& asked)
     }
     else if (!wanted.weights.empty())
     {
-        const Result<double> dimmed = dimField(*on.gpu, *on.field, asked.opened.data, wanted.weights);
+        auto groups = makeLightGroups(*on.gpu, *on.field, asked.opened.data);
+        if (!groups) return groups.error();
+        const Result<double> dimmed = dimField(*on.gpu, *groups, wanted.weights);
         if (!dimmed) return dimmed.error();
         on.groupsMs = *dimmed;
+        if (on.field->state().maps) on.groups = std::move(*groups);
     }
     return success();
 }
@@ -452,13 +456,11 @@ Status putOnDevice(OnDevice& on, const RenderOptions& options, const Quality& tr
                                            : makeLightField(*on.gpu, opened.data, tracer);
     if (!field) return field.error();
     on.field = std::move(*field);
-    if (options.resident > 0)
-    {
-        auto stream = makeFieldStream(*on.gpu, *on.field, {});
-        if (!stream) return stream.error();
-        on.stream = std::move(*stream);
-    }
-    return light(on, asked);
+    if (Status status = light(on, asked); !status || options.resident == 0) return status;
+    auto stream = makeFieldStream(*on.gpu, *on.field, {});
+    if (!stream) return stream.error();
+    on.stream = std::move(*stream);
+    return success();
 }
 
 /// All that the picture depends on, so that it can be drawn again from what stands beside it, and what it took.
@@ -493,11 +495,12 @@ Json reportOf(const RenderOptions& options, const Asked& asked, const OnDevice& 
         json["live_device_bytes"] = on.live->deviceBytes();
     }
     if (drawn.streamed)
-        json["stream"] = {{"resident", drawn.streamed->resident},
-                          {"missing", drawn.streamed->missing},
-                          {"read", drawn.streamed->read},
-                          {"full", drawn.streamed->full},
-                          {"field_device_bytes", on.field->deviceBytes()}};
+        json["stream"] = {
+            {"resident", drawn.streamed->resident},
+            {"missing", drawn.streamed->missing},
+            {"read", drawn.streamed->read},
+            {"full", drawn.streamed->full},
+            {"field_device_bytes", on.field->deviceBytes() + on.stream->deviceBytes() + (on.groups ? on.groups->deviceBytes() : 0)}};
     json["frame_ms"] = drawn.frameMs.empty() ? Json(nullptr) : Json(median(drawn.frameMs));
     json["passes_ms"] = Json::object();
     for (const std::string& pass : drawn.passes) json["passes_ms"][pass] = median(drawn.passMs.at(pass));

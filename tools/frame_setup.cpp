@@ -104,18 +104,16 @@ Result<Lighting> lightFor(const FieldData& data, std::span<const LightGroupDesc>
     return made;
 }
 
-Result<double> dimField(Gpu& gpu, const LightField& field, const FieldData& data, std::span<const vec3> weights)
+Result<double> dimField(Gpu& gpu, LightGroups& groups, std::span<const vec3> weights)
 {
-    auto groups = makeLightGroups(gpu, field, data);
-    if (!groups) return groups.error();
     auto timer = GpuTimer::create(gpu, 1);
     if (!timer) return timer.error();
-    if (Status status = groups->set(weights); !status) return status.error();
+    if (Status status = groups.set(weights); !status) return status.error();
     const Status recorded = gpu.submit(
         [&](VkCommandBuffer cmd)
         {
             timer->reset(cmd);
-            groups->record(cmd, &*timer);
+            groups.record(cmd, &*timer);
         });
     if (!recorded) return recorded.error();
     double milliseconds = 0.0;

@@ -65,7 +65,7 @@ struct Lighting
 Result<Lighting> lightFor(const FieldData& data, std::span<const LightGroupDesc> groups, std::span<const std::string> dims, Scene& scene);
 
 /// Changes the light of a field on the device, as a host does before a frame. @return  milliseconds by the device's clock; 0: it has none
-Result<double> dimField(Gpu& gpu, const LightField& field, const FieldData& data, std::span<const vec3> weights);
+Result<double> dimField(Gpu& gpu, LightGroups& groups, std::span<const vec3> weights);
 
 /// Lights a field with live links anew, to the end. @return  milliseconds by the device's clock, a pass
 Result<std::map<std::string, double>> settle(Gpu& gpu, LiveLight& live, const LightState& state);

@@ -79,7 +79,7 @@ std::vector<uint32_t> takeLiveLights(std::vector<LightGroupDesc>& groups, std::v
     return live;
 }
 
-std::string groupFault(const BakeSettings& settings)
+std::string groupFault(const BakeSettings& settings, size_t probes)
 {
     if (settings.chart != gpu::kChartCube || settings.surfaceTexels == 0 || settings.light)
         return "light groups are kept of surface light on cube faces; give surface texels, and the chart cube";
@@ -94,6 +94,10 @@ std::string groupFault(const BakeSettings& settings)
     if (settings.liveLinks > settings.surfaceRays)
         return fmt::format("there are {} live links of {} rays that gather surface light; give no more links than rays", settings.liveLinks,
                            settings.surfaceRays);
+    const uint64_t side = surfaceSizeOf(settings.chart, chartSize(settings.chart, settings.resolution), settings.surfaceTexels);
+    if (const uint64_t links = 6 * side * side * probes * settings.liveLinks; links > kMostLiveLinks)
+        return fmt::format("{} probes have {} live links, and there may be {}; give fewer probes, live links, or surface texels", probes,
+                           links, kMostLiveLinks);
     return {};
 }
 
@@ -119,9 +123,9 @@ struct GroupBakes
 };
 
 /// @param plan  is referred to by its own settings
-Status planGroups(const Scene& scene, const BakeSettings& settings, std::vector<LightGroupDesc> groups, GroupBakes& plan)
+Status planGroups(const Scene& scene, size_t probes, const BakeSettings& settings, std::vector<LightGroupDesc> groups, GroupBakes& plan)
 {
-    if (std::string fault = groupFault(settings); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
+    if (std::string fault = groupFault(settings, probes); !fault.empty()) return Error{ErrorCode::badArgument, "Bake: " + fault};
     if (settings.liveLinks > 0 && groups.empty()) groups.push_back({"rest", {}});
     auto selected = selectLights(scene, groups);
     if (!selected) return selected.error();
@@ -151,7 +155,7 @@ Status bakeGroupShard(Gpu& gpu, const Scene& scene, std::span<const vec3> probes
                       std::vector<LightGroupDesc> groups, const BakeShard& shard, const Progress& progress, BakeReport& report)
 {
     GroupBakes plan;
-    if (auto status = planGroups(scene, settings, std::move(groups), plan); !status) return status;
+    if (auto status = planGroups(scene, probes.size(), settings, std::move(groups), plan); !status) return status;
     if (auto status = bakeShard(gpu, scene, probes, plan.settings, shard, named(progress, kAllLight), report); !status) return status;
     plan.layout.live.links = settings.liveLinks; // as the bake of all light leaves it: the groups' don't find links anew
     for (size_t g = 0; g < plan.groups.size(); ++g)
@@ -168,7 +172,7 @@ Result<FieldData> bakeLightGroups(Gpu& gpu, const Scene& scene, std::span<const 
                                   std::vector<LightGroupDesc> wanted, const Progress& progress, BakeReport& report)
 {
     GroupBakes plan;
-    if (auto status = planGroups(scene, settings, std::move(wanted), plan); !status) return status.error();
+    if (auto status = planGroups(scene, probes.size(), settings, std::move(wanted), plan); !status) return status.error();
     const std::vector<LightGroupDesc>& groups = plan.groups;
     auto field = bakeLightField(gpu, scene, probes, plan.settings, named(progress, kAllLight), report);
     if (!field) return field;

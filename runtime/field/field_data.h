@@ -43,6 +43,8 @@ struct LiveTransport
     bool lit = true;                    // false: the field has no light yet, and these lights are those of the scene
 };
 
+inline constexpr uint64_t kMostLiveLinks = 1ull << 32; // of a field's texels: shaders number them by a word
+
 /// A baked light field in host memory: what a .sconce file holds. Layouts of the words: shaders/shared/light_field.h.
 struct FieldData
 {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/field/light_groups.h"
+
 namespace sconce
 {
 namespace
@@ -20,12 +22,12 @@ constexpr float kMoreAsked = 1.25f; // times what another is, that a probe must 
 
 } // namespace
 
-MapReader::MapReader(MapFile& maps, uint32_t ahead) : file(maps)
+MapReader::MapReader(MapFile& maps, uint32_t ahead, bool shares) : file(maps), ofShares(shares)
 {
     wanted.reserve(kMostWanted);
     ready.reserve(ahead);
-    for (uint32_t i = 0; i < ahead; ++i)
-        free.push_back({gpu::kNoProbe, std::vector<uint32_t>(maps.distanceWords() + maps.radianceWords())});
+    const size_t words = maps.distanceWords() + maps.radianceWords() * (shares ? maps.groups() : 1);
+    for (uint32_t i = 0; i < ahead; ++i) free.push_back({gpu::kNoProbe, std::vector<uint32_t>(words)});
     thread = std::jthread([this](std::stop_token stop) { run(stop); });
 }
 
@@ -103,8 +105,8 @@ void MapReader::run(std::stop_token stop)
         maps.probe = reading = wanted.back();
         wanted.pop_back();
         lock.unlock();
-        const std::span words(maps.words);
-        const Status status = file.read(maps.probe, words.first(file.distanceWords()), words.subspan(file.distanceWords()));
+        const auto distance = std::span(maps.words).first(file.distanceWords()), light = std::span(maps.words).subspan(distance.size());
+        const Status status = ofShares ? file.readShares(maps.probe, distance, light) : file.read(maps.probe, distance, light);
         lock.lock();
         reading = gpu::kNoProbe;
         if (status)
@@ -202,7 +204,10 @@ Result<FieldStream> makeFieldStream(Gpu& gpu, const LightField& field, const Fie
         return Error{ErrorCode::badArgument, fmt::format("framesInFlight is {}; give 1 to 8", desc.framesInFlight)};
     using State = FieldStream::State;
     auto state = std::make_unique<State>(State{gpu.shared_from_this(), field, desc, {nullptr, [](MapPool* of) { of->fed = false; }}});
-    const uint64_t bytes = 4 * (pool->file.distanceWords() + pool->file.radianceWords());
+    state->mixes = pool->groups != nullptr;
+    state->shares = state->mixes ? pool->file.groups() : 1;
+    state->filled.reserve(desc.probesAFrame);
+    const uint64_t bytes = 4 * (pool->file.distanceWords() + pool->file.radianceWords() * state->shares);
     auto staging = gpu.makeBuffer(bytes * desc.probesAFrame * desc.framesInFlight, 0, MemoryUse::upload, "maps on their way");
     if (!staging) return staging.error();
     state->staging = std::move(*staging);
@@ -212,7 +217,7 @@ Result<FieldStream> makeFieldStream(Gpu& gpu, const LightField& field, const Fie
     state->asked.assign(probes, 0.0f);
     state->order.reserve(probes);
     state->names.reserve(probes);
-    state->reader = std::make_unique<MapReader>(pool->file, 2 * desc.probesAFrame);
+    state->reader = std::make_unique<MapReader>(pool->file, 2 * desc.probesAFrame, state->mixes);
     state->filledAt.assign(pool->slots, 0);
     state->lost.assign(probes, 0);
     pool->fed = true;
@@ -232,6 +237,12 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     state.follow(eye);
 
     const size_t distanceBytes = 4 * pool.file.distanceWords(), radianceBytes = 4 * pool.file.radianceWords();
+    const size_t mapBytes = distanceBytes + state.shares * radianceBytes;
+    // Shares of groups that are gone can't be mixed: what is there stays in their last light, and nothing comes.
+    const bool orphaned = state.mixes && !pool.groups;
+    const VkBuffer light =
+        state.mixes && !orphaned ? pool.groups->parts[*pool.groups->shareOfMaps].shares.handle() : field.radiance.handle();
+    state.filled.clear();
     const size_t first = (state.records % state.desc.framesInFlight) * state.desc.probesAFrame;
     const auto set = [&](uint32_t probe, uint32_t slot)
     {
@@ -260,16 +271,22 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     {
         auto maps = state.reader->take();
         if (!maps) break;
-        const uint32_t slot = state.slotOfProbe[maps->probe] == gpu::kNoProbe ? state.slotFor(maps->probe, eye) : gpu::kNoProbe;
+        const bool comes = !orphaned && state.slotOfProbe[maps->probe] == gpu::kNoProbe;
+        const uint32_t slot = comes ? state.slotFor(maps->probe, eye) : gpu::kNoProbe;
         if (slot != gpu::kNoProbe)
         {
             begin();
-            const VkDeviceSize from = (first + copied) * (distanceBytes + radianceBytes);
-            std::memcpy(state.staging.mapped() + from, maps->words.data(), distanceBytes + radianceBytes);
-            const VkBufferCopy distance{from, slot * distanceBytes, distanceBytes},
-                radiance{from + distanceBytes, slot * radianceBytes, radianceBytes};
+            const VkDeviceSize from = (first + copied) * mapBytes;
+            std::memcpy(state.staging.mapped() + from, maps->words.data(), mapBytes);
+            const VkBufferCopy distance{from, slot * distanceBytes, distanceBytes};
             gpu.vk.CmdCopyBuffer(cmd, state.staging.handle(), field.distance.handle(), 1, &distance);
-            if (radianceBytes > 0) gpu.vk.CmdCopyBuffer(cmd, state.staging.handle(), field.radiance.handle(), 1, &radiance);
+            for (VkDeviceSize share = 0; share < state.shares && radianceBytes > 0; ++share)
+            {
+                const VkBufferCopy radiance{from + distanceBytes + share * radianceBytes, (share * pool.slots + slot) * radianceBytes,
+                                            radianceBytes};
+                gpu.vk.CmdCopyBuffer(cmd, state.staging.handle(), light, 1, &radiance);
+            }
+            state.filled.push_back(slot);
             if (const uint32_t before = state.probeOfSlot[slot]; before != gpu::kNoProbe) set(before, gpu::kNoProbe);
             state.probeOfSlot[slot] = maps->probe;
             state.filledAt[slot] = state.records;
@@ -280,9 +297,16 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     }
     if (begun)
     {
-        // Read after write, by whatever stage of the host asks the field.
+        // Read after write, by whatever stage of the host asks the field, and by what mixes shares.
         memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                      VK_ACCESS_2_MEMORY_READ_BIT);
+                      VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+        if (state.mixes && !state.filled.empty())
+        {
+            recordSlotMix(*pool.groups, cmd, state.filled);
+            // Read after write, by whatever stage asks the field, and write after write, by what mixes all of it.
+            memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+        }
         if (timer) timer->end(cmd);
     }
 
@@ -304,6 +328,7 @@ void FieldStream::record(VkCommandBuffer cmd, vec3 eye, GpuTimer* timer) noexcep
     state.names.clear();
     for (size_t i = 0; i < most; ++i)
         if (state.slotFor(state.order[i].second, eye) != gpu::kNoProbe) state.names.push_back(state.order[i].second);
+    if (orphaned) state.names.clear();
     counts.full = counts.missing > 0 && std::ranges::none_of(state.names, [&](uint32_t probe) { return state.asked[probe] > 0.0f; });
     state.reader->want(state.names);
     counts.read = state.reader->read();

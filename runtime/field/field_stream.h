@@ -21,11 +21,12 @@ public:
     struct Maps
     {
         uint32_t probe = gpu::kNoProbe;
-        std::vector<uint32_t> words; // distance, then radiance
+        std::vector<uint32_t> words; // distance, then radiance, or the shares of it
     };
 
     /// @param ahead  buffers
-    MapReader(MapFile& file, uint32_t ahead);
+    /// @param shares  the groups' shares of radiance are read, not their sum
+    MapReader(MapFile& file, uint32_t ahead, bool shares = false);
     ~MapReader();
     /// What is to be read from now on, in place of what was to be before; what has been read stays.
     /// @param probes  at most kMostWanted of them count, the first ones
@@ -46,6 +47,7 @@ private:
     void run(std::stop_token stop);
 
     MapFile& file;
+    bool ofShares;
     mutable std::mutex mutex;
     std::condition_variable_any changed;
     std::vector<uint32_t> wanted; // the next one last
@@ -80,7 +82,10 @@ struct FieldStream::State
     vec3 eyeBefore{0.0f};                          // of the last record
     std::array<uint32_t, 2> nearby{};              // probes nearest to the eye, and to where it will be: worthier than all
     uint64_t records = 0;
-    bool forgets = false; // the next record clears the slots that another stream has filled
+    bool forgets = false;         // the next record clears the slots that another stream has filled
+    uint32_t shares = 1;          // of radiance, that are copied for a probe
+    bool mixes = false;           // they are of the pool's groups
+    std::vector<uint32_t> filled; // slots of this record, to be mixed
     Counts counts;
 
     void noteAsked();

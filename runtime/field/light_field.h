@@ -14,11 +14,12 @@ namespace sconce
 struct MapPool
 {
     MapFile file;
-    uint32_t slots = 0; // probes whose maps there is room for
-    Buffer slotOfProbe; // kNoProbe: not there
-    Buffer asked;       // a count for each probe, of passes, taken and cleared by the host
-    bool fed = false;   // a FieldStream has it
-    bool used = false;  // one has had it: slotOfProbe may tell of maps that the next one doesn't know of
+    uint32_t slots = 0;                   // probes whose maps there is room for
+    Buffer slotOfProbe;                   // kNoProbe: not there
+    Buffer asked;                         // a count for each probe, of passes, taken and cleared by the host
+    bool fed = false;                     // a FieldStream has it
+    bool used = false;                    // one has had it: slotOfProbe may tell of maps that the next one doesn't know of
+    LightGroups::State* groups = nullptr; // that the field's radiance is mixed of; null: it is what the file holds
 };
 
 /// What stands behind the handle LightField.

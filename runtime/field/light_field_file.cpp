@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -329,6 +330,8 @@ std::string liveProblem(const FieldData& field)
     if (live.links > knobs::liveLinks.most) return fmt::format("it has {} live links a texel, above {}", live.links, knobs::liveLinks.most);
     const uint64_t texels = uint64_t(6) * i.surfaceSize * i.surfaceSize * i.probeCount, half = i.faceSize / 2;
     if (field.groups.empty() || field.surfaceLight.empty()) return "it has live light without light groups or surface light";
+    if (const uint64_t links = std::max<uint64_t>(texels, live.places.size()) * live.links; links > kMostLiveLinks)
+        return fmt::format("it has {} live links, above {}", links, kMostLiveLinks);
     if (live.texels.size() != texels || live.texelLinks.size() != texels * live.links ||
         live.placeLinks.size() != live.places.size() * live.links || live.tints.size() != gpu::kTints ||
         live.albedo.size() != (6 * half * half * i.probeCount + 1) / 2)
@@ -684,11 +687,38 @@ Status readBlock(Reader& reader, const Block& block, Bytes& stored, std::span<st
     return success();
 }
 
+/// Of a section whose blocks these are, from a byte on. Blocks of which it asks nothing aren't read.
+Status readRange(Reader& reader, std::span<const Block> blocks, uint64_t from, std::span<std::byte> out, Bytes& stored, Bytes& raw)
+{
+    uint64_t at = 0; // of the block in its section
+    for (const Block& block : blocks)
+    {
+        const uint64_t first = std::max(from, at), last = std::min(from + out.size(), at + block.rawBytes);
+        if (first < last)
+        {
+            raw.resize(block.rawBytes);
+            if (Status status = readBlock(reader, block, stored, raw); !status) return status;
+            std::ranges::copy(std::span(raw).subspan(first - at, last - first), out.begin() + std::ptrdiff_t(first - from));
+        }
+        at += block.rawBytes;
+    }
+    return success();
+}
+
+std::vector<Block> blocksOfSection(const Table& table, Section section)
+{
+    std::vector<Block> found;
+    std::ranges::copy_if(table.blocks, std::back_inserter(found), [&](const Block& block) { return block.section == section; });
+    return found;
+}
+
 /// Bytes of a section's blocks but the last: of the maps as many probes as come to kMapBytes, at least one, so that they can be read one by
-/// one.
+/// one; of the shares of light groups, most of which is radiance of maps, as much.
 uint64_t blockBytes(Section section, uint64_t bytes, const gpu::LightFieldInfo& info)
 {
-    const uint64_t probe = section == distance || section == radiance ? bytes / std::max(info.probeCount, 1u) : 0;
+    const uint64_t probe = section == distance || section == radiance ? bytes / std::max(info.probeCount, 1u)
+                           : section == groupShares                   ? radianceWordsOf(info) * sizeof(uint32_t)
+                                                                      : 0;
     return probe == 0 || probe > kChunkBytes ? kChunkBytes : probe * std::max<uint64_t>(1, kMapBytes / probe);
 }
 
@@ -757,6 +787,7 @@ Status saveChecked(const FieldData& field, const std::filesystem::path& path)
     }
     std::string problem = sizeProblem(field.info, treeHeader, rawBytes);
     if (problem.empty()) problem = contentProblem(field);
+    if (problem.empty() && blockCount > kMaxBlocks) problem = fmt::format("it has {} blocks, above {}", blockCount, kMaxBlocks);
     if (!problem.empty()) return Error{ErrorCode::badArgument, fmt::format("The light field cannot be written: {}.", problem)};
 
     Result<SafeFile> file = SafeFile::create(path);
@@ -789,7 +820,8 @@ void giveGrazingASign(std::span<gpu::LiveTexel> texels)
     for (gpu::LiveTexel& texel : texels) texel.normal = (texel.normal & 0xffffffu) | ((texel.normal >> 24) * 127u + 127u) / 255u << 24;
 }
 
-/// @param maps  whether distance and radiance are read; else they stay empty, of what can do without: cube faces in light that stays
+/// @param maps  whether distance and radiance are read; else they stay empty, and so do groups' shares of radiance, of what can do without:
+/// cube faces whose lights don't move
 Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
 {
     uint64_t rawBytes[sectionCount] = {};
@@ -820,16 +852,16 @@ Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
     if (Status status = readInto(meta, std::as_writable_bytes(std::span(text))); !status) return status.error();
     if (!applyMeta(text, field)) return reader.damage("block 'meta' is not the JSON text it should be");
     const bool octahedral = field.info.chart != gpu::kChartCube;
-    if (!maps && (octahedral || !field.groups.empty() || field.live.links > 0))
+    if (!maps && (octahedral || field.live.links > 0))
         return Error{ErrorCode::badArgument,
                      fmt::format("The maps of light field '{}' can't be read while frames are drawn: {}. Load all of it, or bake it {}.",
-                                 reader.name, octahedral ? "they are octahedral" : "its light may change",
-                                 octahedral ? "with cube faces" : "without light groups and live links")};
+                                 reader.name, octahedral ? "they are octahedral" : "its lights may move",
+                                 octahedral ? "with cube faces" : "without live links")};
     const uint64_t ofGroup = rawBytes[radiance] + rawBytes[irradiance] + rawBytes[prefiltered] + rawBytes[surface];
     if (rawBytes[groupShares] != field.groups.size() * ofGroup)
         return reader.damage(
             fmt::format("its section '{}' has another size than its {} groups", kSectionNames[groupShares], field.groups.size()));
-    std::vector<uint32_t> shares(rawBytes[groupShares] / sizeof(uint32_t));
+    std::vector<uint32_t> shares(maps ? rawBytes[groupShares] / sizeof(uint32_t) : 0);
     field.probes.resize(rawBytes[probes] / sizeof(gpu::ProbeHeader));
     if (maps)
     {
@@ -870,17 +902,29 @@ Result<FieldData> readField(Reader& reader, const Table& table, bool maps)
     };
     for (const auto& [section, raw] : parts)
     {
-        if (!maps && (section == distance || section == radiance)) continue;
+        if (!maps && (section == distance || section == radiance || section == groupShares)) continue;
         if (Status status = readInto(section, raw); !status) return status.error();
     }
     if (table.header.version < kLiveFileVersion) giveGrazingASign(field.live.texels);
     auto word = shares.cbegin();
+    uint64_t at = 0; // of a part in its section
+    Bytes raw;
+    const std::vector<Block> ofShares = blocksOfSection(table, groupShares);
     for (LightGroup& group : field.groups)
         for (const LightPart& part : kLightParts)
         {
-            const auto end = word + std::ptrdiff_t((field.*part.words).size());
-            (group.*part.share).assign(word, end);
-            word = end;
+            std::vector<uint32_t>& share = group.*part.share;
+            const size_t words = (field.*part.words).size();
+            if (maps)
+            {
+                share.assign(word, word + std::ptrdiff_t(words));
+                word += std::ptrdiff_t(words);
+                continue;
+            }
+            share.resize(words);
+            if (Status status = readRange(reader, ofShares, at, std::as_writable_bytes(std::span(share)), stored, raw); !status)
+                return status.error();
+            at += part.words == &FieldData::radiance ? rawBytes[radiance] : words * sizeof(uint32_t);
         }
     if (const std::string problem = contentProblem(field); !problem.empty()) return reader.damage(problem);
     return field;
@@ -971,26 +1015,16 @@ uint64_t lightHashOf(const FieldData& field)
 struct MapFile::State
 {
     Reader reader;
-    std::vector<Block> distanceBlocks, radianceBlocks;
+    std::vector<Block> distanceBlocks, radianceBlocks, shareBlocks;
     size_t distanceWords = 0, radianceWords = 0; // of a probe
+    uint32_t groups = 0;
+    uint64_t groupBytes = 0; // of a group's share of all light, whose radiance comes first
     Bytes stored, raw;
 
-    /// Of one of the two sections, from a byte on.
-    Status read(std::span<const Block> blocks, uint64_t from, std::span<std::byte> out)
+    /// Of one of the sections, from a byte on.
+    Status read(std::span<const Block> blocks, uint64_t from, std::span<uint32_t> out)
     {
-        uint64_t at = 0; // of the block in its section
-        for (const Block& block : blocks)
-        {
-            const uint64_t first = std::max(from, at), last = std::min(from + out.size(), at + block.rawBytes);
-            if (first < last)
-            {
-                raw.resize(block.rawBytes);
-                if (Status status = readBlock(reader, block, stored, raw); !status) return status;
-                std::ranges::copy(std::span(raw).subspan(first - at, last - first), out.begin() + std::ptrdiff_t(first - from));
-            }
-            at += block.rawBytes;
-        }
-        return success();
+        return readRange(reader, blocks, from, std::as_writable_bytes(out), stored, raw);
     }
 };
 
@@ -1009,16 +1043,34 @@ size_t MapFile::radianceWords() const
     return owned->radianceWords;
 }
 
+uint32_t MapFile::groups() const
+{
+    return owned->groups;
+}
+
 Status MapFile::read(uint32_t probe, std::span<uint32_t> distance_, std::span<uint32_t> radiance_)
 {
     return guarded(owned->reader.name,
                    [&]() -> Status
                    {
-                       const auto bytes = [](std::span<uint32_t> words) { return std::as_writable_bytes(words); };
-                       if (Status status = owned->read(owned->distanceBlocks, probe * uint64_t(distance_.size_bytes()), bytes(distance_));
-                           !status)
+                       if (Status status = owned->read(owned->distanceBlocks, probe * uint64_t(distance_.size_bytes()), distance_); !status)
                            return status;
-                       return owned->read(owned->radianceBlocks, probe * uint64_t(radiance_.size_bytes()), bytes(radiance_));
+                       return owned->read(owned->radianceBlocks, probe * uint64_t(radiance_.size_bytes()), radiance_);
+                   });
+}
+
+Status MapFile::readShares(uint32_t probe, std::span<uint32_t> distance_, std::span<uint32_t> shares)
+{
+    assert(shares.size() == owned->groups * owned->radianceWords);
+    return guarded(owned->reader.name,
+                   [&]() -> Status
+                   {
+                       Status status = owned->read(owned->distanceBlocks, probe * uint64_t(distance_.size_bytes()), distance_);
+                       const uint64_t words = owned->radianceWords;
+                       for (uint32_t group = 0; status && group < owned->groups; ++group)
+                           status = owned->read(owned->shareBlocks, group * owned->groupBytes + probe * words * sizeof(uint32_t),
+                                                shares.subspan(group * words, words));
+                       return status;
                    });
 }
 
@@ -1035,14 +1087,16 @@ Result<FieldAndMaps> openField(const std::filesystem::path& file)
                        Result<FieldData> field = readField(*reader, *table, false);
                        if (!field) return field.error();
                        auto made = std::make_unique<MapFile::State>();
-                       for (const Block& block : table->blocks)
-                       {
-                           if (block.section == distance) made->distanceBlocks.push_back(block);
-                           if (block.section == radiance && block.rawBytes > 0) made->radianceBlocks.push_back(block);
-                       }
+                       made->distanceBlocks = blocksOfSection(*table, distance);
+                       made->radianceBlocks = blocksOfSection(*table, radiance);
+                       made->shareBlocks = blocksOfSection(*table, groupShares);
                        made->distanceWords = field->info.wordsPerProbe;
-                       for (const Block& block : made->radianceBlocks) made->radianceWords += block.rawBytes / sizeof(uint32_t);
-                       made->radianceWords /= std::max(field->info.probeCount, 1u);
+                       uint64_t radianceBytes = 0;
+                       for (const Block& block : made->radianceBlocks) radianceBytes += block.rawBytes;
+                       made->radianceWords = radianceBytes / sizeof(uint32_t) / std::max(field->info.probeCount, 1u);
+                       made->groups = uint32_t(field->groups.size());
+                       for (const Block& block : made->shareBlocks) made->groupBytes += block.rawBytes;
+                       made->groupBytes /= std::max(made->groups, 1u);
                        made->reader = std::move(*reader);
                        return FieldAndMaps{std::move(*field), MapFile(std::move(made))};
                    });

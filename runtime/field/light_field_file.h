@@ -47,9 +47,12 @@ public:
     ~MapFile();
     size_t distanceWords() const; // of a probe
     size_t radianceWords() const; // 0: the field has none
+    uint32_t groups() const;      // of lights, each with a share of the radiance
     /// Reads and checks one probe's. Cost: the blocks that they are in, each of one probe where a file was written for it, else of up to 16
     /// MiB. Errors: fileError, badInput (names the damaged block), outOfMemory.
     Status read(uint32_t probe, std::span<uint32_t> distance, std::span<uint32_t> radiance);
+    /// The same with the groups' shares of radiance, [group][word], in place of their sum.
+    Status readShares(uint32_t probe, std::span<uint32_t> distance, std::span<uint32_t> shares);
 
     struct State;
     explicit MapFile(std::unique_ptr<State> made);
@@ -58,7 +61,7 @@ private:
     std::unique_ptr<State> owned;
 };
 
-/// A light field without its maps: `field` has neither distance nor radiance words.
+/// A light field without its maps: `field` has neither distance nor radiance words, its groups no shares of radiance.
 struct FieldAndMaps
 {
     FieldData field;
@@ -66,7 +69,7 @@ struct FieldAndMaps
 };
 
 /// Reads all but the maps, whose blocks are checked when they are read. Errors: as loadField(), and badArgument for a field that has no
-/// cube faces, or whose light is in groups or moves: what changes light changes the maps.
+/// cube faces, or whose lights may move.
 Result<FieldAndMaps> openField(const std::filesystem::path& file);
 
 struct BlockReport

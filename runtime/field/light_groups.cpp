@@ -1,6 +1,7 @@
 #include "runtime/field/light_groups.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -115,6 +116,13 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
                      fmt::format("the light of the field of scene '{}' has light groups or live light already, which would write over what "
                                  "these do; use those, or load the field once more",
                                  data.sceneName)};
+    MapPool* const pool = of.maps.get();
+    if (pool && pool->fed)
+        return Error{
+            ErrorCode::badArgument,
+            fmt::format("the light field of scene '{}' has a stream, which copies maps in one light; make the light groups before it",
+                        data.sceneName)};
+    assert(!pool || pool->file.groups() == data.groups.size());
     auto state = std::make_unique<LightGroups::State>(LightGroups::State{gpu.shared_from_this(), field});
     LightGroups::State& made = *state;
     for (const LightGroup& group : data.groups) made.groups.push_back({group.which, group.sky, group.lamps, {}, {}, {}, {}});
@@ -122,18 +130,30 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
     const Buffer* const targets[] = {&of.radiance, &of.irradiance, &of.prefiltered, &of.surface};
     for (size_t i = 0; i < std::size(kLightParts); ++i)
     {
-        const size_t words = (data.*kLightParts[i].words).size();
-        if (words == 0 || (!radiance && kLightParts[i].words == &FieldData::radiance)) continue;
+        const bool ofMaps = kLightParts[i].words == &FieldData::radiance, streams = ofMaps && pool;
+        const size_t words = streams ? pool->slots * pool->file.radianceWords() : (data.*kLightParts[i].words).size();
+        if (words == 0 || (!radiance && ofMaps)) continue;
         if (words * data.groups.size() > kMostShareWords)
             return Error{ErrorCode::outOfMemory,
                          fmt::format("{} light groups of {} words each are more than the {} that a shader reaches; bake fewer groups or "
-                                     "probes",
-                                     data.groups.size(), words, kMostShareWords)};
+                                     "probes{}",
+                                     data.groups.size(), words, kMostShareWords, streams ? ", or keep fewer maps on the device" : "")};
         LightGroups::State::Part part{kKinds[i], targets[i], uint32_t(words), {}, 0};
         auto buffer = gpu.makeBuffer(words * data.groups.size() * 4, 0, MemoryUse::device, "light groups");
         if (!buffer) return buffer.error();
         part.shares = std::move(*buffer);
-        for (size_t g = 0; g < data.groups.size(); ++g)
+        if (streams) // what no map has been copied to is mixed all the same; and what was there was in another light
+        {
+            auto cleared = gpu.submit(
+                [&](VkCommandBuffer cmd)
+                {
+                    gpu.vk.CmdFillBuffer(cmd, part.shares.handle(), 0, VK_WHOLE_SIZE, 0);
+                    gpu.vk.CmdFillBuffer(cmd, pool->slotOfProbe.handle(), 0, VK_WHOLE_SIZE, gpu::kNoProbe);
+                });
+            if (!cleared) return cleared.error();
+            made.shareOfMaps = made.parts.size();
+        }
+        for (size_t g = 0; g < data.groups.size() && !streams; ++g)
         {
             const std::span<const uint32_t> share(data.groups[g].*kLightParts[i].share);
             if (auto status = gpu.upload(part.shares, g * words * 4, std::as_bytes(share)); !status) return status.error();
@@ -145,13 +165,20 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
     if (!weights) return weights.error();
     made.weightBuffer = std::move(*weights);
     made.bytes += made.weightBuffer.size();
+    // A stream may be recorded before these are.
+    if (auto status = gpu.upload(made.weightBuffer, 0, std::as_bytes(std::span(made.weights))); !status) return status.error();
     const VkDescriptorSetLayout layouts[] = {field.layout()};
     auto pipeline = Pipeline::compute(gpu, mix_groups_comp, layouts, sizeof(gpu::MixPush), shaderConstants(field));
     if (!pipeline) return pipeline.error();
     made.pipeline = std::move(*pipeline);
     made.changed = true; // the field's light may be another mix than the one that set() has not been told to change yet
     of.mixed = true;
-    made.mixes = {&of, [](LightField::State* mixed) { mixed->mixed = false; }};
+    if (pool && made.shareOfMaps) pool->groups = &made;
+    made.mixes = {&of, [](LightField::State* mixed)
+                  {
+                      mixed->mixed = false;
+                      if (mixed->maps) mixed->maps->groups = nullptr;
+                  }};
     return LightGroups(std::move(state));
 }
 
@@ -208,13 +235,29 @@ void recordMix(LightGroups::State& state, VkCommandBuffer cmd, GpuTimer* timer) 
     {
         if (!weighed && part.live == 0) continue; // as it was
         state.pipeline.push(cmd, gpu::MixPush{part.target->address(), part.shares.address(), state.weightBuffer.address(), part.live,
-                                              part.words, uint32_t(state.groups.size()), part.kind, 0});
+                                              part.words, uint32_t(state.groups.size()), part.kind, part.words});
         gpu.vk.CmdDispatch(cmd, workgroupsInARow(part.words, gpu::kMixGroup), 1, 1);
     }
     // Read after write, by whatever stage of the host asks the field.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
     if (timer) timer->end(cmd);
+}
+
+void recordSlotMix(LightGroups::State& state, VkCommandBuffer cmd, std::span<const uint32_t> slots) noexcept
+{
+    const LightGroups::State::Part& part = state.parts[*state.shareOfMaps];
+    const MapPool& pool = *state.field.state().maps;
+    const auto words = uint32_t(pool.file.radianceWords());
+    const VkDescriptorSet sets[] = {state.field.descriptorSet()};
+    state.pipeline.bind(cmd, sets);
+    for (const uint32_t slot : slots)
+    {
+        const VkDeviceSize at = VkDeviceSize(slot) * words * sizeof(uint32_t);
+        state.pipeline.push(cmd, gpu::MixPush{part.target->address() + at, part.shares.address() + at, state.weightBuffer.address(), 0,
+                                              words, uint32_t(state.groups.size()), part.kind, part.words});
+        state.gpu->vk.CmdDispatch(cmd, workgroupsInARow(words, gpu::kMixGroup), 1, 1);
+    }
 }
 
 uint64_t LightGroups::deviceBytes() const

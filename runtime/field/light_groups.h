@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "runtime/field/field_data.h"
@@ -32,6 +33,7 @@ struct LightGroups::State
         VkDeviceAddress live = 0; // a share more, of weight 1; 0: none
     };
     std::vector<Part> parts;
+    std::optional<size_t> shareOfMaps; // the part of a field that streams whose shares a FieldStream copies, [group][slot][word]
     Buffer weightBuffer;
     Pipeline pipeline;
     std::vector<vec3> weights;
@@ -47,6 +49,10 @@ Result<LightGroups> makeLightGroups(Gpu& gpu, const LightField& field, const Fie
 
 /// LightGroups::record(), whether anything was set or not.
 void recordMix(LightGroups::State& state, VkCommandBuffer cmd, GpuTimer* timer) noexcept;
+
+/// Mixes the radiance of maps whose shares have been copied to slots of a pool, by the weights that were recorded last. Between barriers of
+/// the caller's.
+void recordSlotMix(LightGroups::State& state, VkCommandBuffer cmd, std::span<const uint32_t> slots) noexcept;
 
 /// The sky of all groups, each times its weight.
 vec3 mixedSky(std::span<const LightGroup> groups, std::span<const vec3> weights);

@@ -20,13 +20,13 @@ const uint kMixSurface = 2u;    // surface light, with all that follows its texe
 struct MixPush
 {
     SCONCE_ADDRESS(MixWords) target;    // words of the field
-    SCONCE_ADDRESS(MixWords) shares;    // [group][count]
+    SCONCE_ADDRESS(MixWords) shares;    // [group][stride]
     SCONCE_ADDRESS(MixWeights) weights; // of the groups
     SCONCE_ADDRESS(MixWords) live;      // a share more, of live light; null: none
-    uint count;  // words of a share
+    uint count;  // words to mix
     uint groups;
     uint kind;   // kMix...
-    uint unused; // to a multiple of 8
+    uint stride; // words of a share
 };
 SCONCE_CHECK_SIZE(MixPush, 48);
 

@@ -1,5 +1,7 @@
 #include "base/knobs.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -26,6 +28,36 @@ TEST(Knobs, EveryOneOfTheHeaderIsARowOfItsOwn)
         EXPECT_FALSE(row.byDefault.empty() || row.range.empty() || row.what.empty()) << row.name;
         EXPECT_TRUE(!row.readme || !row.buys.empty()) << row.name;
     }
+}
+
+// What the README's table names, a host finds in what it includes.
+TEST(Knobs, MembersOfTheReadmesTableAreTheHosts)
+{
+    std::string included;
+    for (const char* file : {"/runtime/sconce.h", "/runtime/frame/effect_plan.h", "/runtime/field/quality.h", "/shaders/shared/frame.h",
+                             "/shaders/shared/light_field.h"})
+        included += testing_support::readText(std::string(SCONCE_SOURCES) + file);
+    int named = 0;
+    for (const KnobRow& row : knobRows())
+    {
+        if (!row.readme || row.member.empty()) continue;
+        ++named;
+        std::string path(row.member.substr(0, row.member.find(',')));
+        if (path.starts_with("Quality::trace.")) path.replace(0, std::string_view("Quality::trace.").size(), "TraceQuality::");
+        size_t begin = 0, end = std::string::npos;
+        for (size_t colons; (colons = path.find("::")) != std::string::npos; path.erase(0, colons + 2))
+        {
+            const std::string owner = path.substr(0, colons) + "\n";
+            begin = std::min(included.find("struct " + owner, begin), included.find("class " + owner, begin));
+            ASSERT_LT(begin, end) << row.member;
+            if (end == std::string::npos) end = included.find("\n};", begin);
+        }
+        const std::string inside = included.substr(begin, end - begin);
+        const bool declared = std::ranges::any_of(std::array{" =", ";", ",", "("},
+                                                  [&](const char* then) { return inside.find(" " + path + then) != std::string::npos; });
+        EXPECT_TRUE(declared) << row.member;
+    }
+    EXPECT_GT(named, 12);
 }
 
 TEST(Knobs, AValueOutOfRangeIsASentence)

@@ -32,6 +32,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     const auto file = testing_support::inputFile(bytes, size);
     (void)verifyField(file);
     if (const auto field = loadField(file); field) ask(*field);
+    if (auto opened = openField(file); opened)
+    {
+        MapFile& maps = opened->maps;
+        std::vector<uint32_t> distance(maps.distanceWords()), light(maps.radianceWords()), shares(maps.groups() * light.size());
+        for (const uint32_t probe : {0u, std::max(opened->field.info.probeCount, 1u) - 1u})
+        {
+            (void)maps.read(probe, distance, light);
+            (void)maps.readShares(probe, distance, shares);
+        }
+    }
     return 0;
 }
 

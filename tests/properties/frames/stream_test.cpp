@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/bake/group_bake.h"
 #include "runtime/field/field_stream.h"
+#include "runtime/field/light_groups.h"
 #include "runtime/field/map_blocks.h"
 #include "scene/builtin_scenes.h"
 #include "tests/properties/frames/frame_test.h"
@@ -28,7 +30,6 @@ protected:
     {
         scene = *makeBuiltinScene("hall");
         camera = scene.cameras.front();
-        std::vector<vec3> probes;
         for (int x = 0; x < 4; ++x)
             for (int z = 0; z < 4; ++z) probes.push_back(glm::mix(low(), high(), vec3(float(x) / 3.0f, 0.5f, float(z) / 3.0f)));
         auto made = bakeField(scene, probes);
@@ -50,6 +51,7 @@ protected:
         FieldStream stream;
         std::unique_ptr<SceneRenderer> renderer;
     };
+    std::optional<LightGroups> groups; // of a field that has some
 
     Result<Streamed> open(uint32_t resident, FieldStream::Desc desc = {})
     {
@@ -58,6 +60,12 @@ protected:
         device.emplace(std::move(*DeviceScene::create(gpu(), scene, opened->field.info)));
         auto field = makeStreamedField(gpu(), opened->field, std::move(opened->maps), resident);
         if (!field) return field.error();
+        if (!opened->field.groups.empty())
+        {
+            auto made = makeLightGroups(gpu(), *field, opened->field);
+            if (!made) return made.error();
+            groups = std::move(*made);
+        }
         auto stream = makeFieldStream(gpu(), *field, desc);
         if (!stream) return stream.error();
         auto renderer = SceneRenderer::create(gpu(), *device, *field, settings);
@@ -110,9 +118,16 @@ protected:
         return sum / (3.0 * double(truth.size()) * meanOf(truth) * meanOf(truth));
     }
 
+    Status dim(LightGroups& lights, std::span<const vec3> weights)
+    {
+        if (auto status = lights.set(weights); !status) return status;
+        return gpu().submit([&](VkCommandBuffer cmd) { lights.record(cmd); });
+    }
+
     TestFolder folder;
     Scene scene;
     Camera camera;
+    std::vector<vec3> probes;
     FieldData baked;
     std::filesystem::path file;
     RenderSettings settings;
@@ -152,6 +167,78 @@ TEST_F(Streaming, MapsInBlocksComeTheSameWayAndMakeNearlyThePictureOfTexels)
     ASSERT_TRUE(frame) << frame.error().message;
     EXPECT_EQ(frame->diffuseIndirect, blocks.diffuseIndirect);
     EXPECT_EQ(frame->glossyIndirect, blocks.glossyIndirect);
+}
+
+// Of light in groups the maps come as shares, which are mixed by the weights of now: those that are there when the light changes, and those
+// that come later.
+TEST_F(Streaming, LightGroupsAreMixedAsTheirMapsCome)
+{
+    BakeReport report;
+    auto grouped = bakeLightGroups(gpu(), scene, probes, bakeOf(), {{"warm", {"warm panel"}}}, {}, report);
+    ASSERT_TRUE(grouped) << grouped.error().message;
+    ASSERT_EQ(grouped->groups.size(), 2u);
+    ASSERT_TRUE(saveField(*grouped, file));
+    const std::vector<vec3> evening = {vec3(1.5f, 1.0f, 0.5f), vec3(0.1f)}, day = {vec3(0.0f), vec3(1.0f)};
+    const auto wholeField = makeLightField(gpu(), *grouped);
+    ASSERT_TRUE(wholeField);
+    auto wholeGroups = makeLightGroups(gpu(), *wholeField, *grouped);
+    ASSERT_TRUE(wholeGroups) << wholeGroups.error().message;
+
+    for (const uint32_t resident : {uint32_t(probes.size()), 5u})
+    {
+        groups.reset();
+        auto streamed = open(resident);
+        ASSERT_TRUE(streamed) << streamed.error().message;
+        const auto full = SceneRenderer::create(gpu(), *device, *wholeField, settings);
+        ASSERT_TRUE(full);
+        std::optional<RenderedFrame> before;
+        for (const std::vector<vec3>& weights : {evening, day})
+        {
+            ASSERT_TRUE(dim(*groups, weights) && dim(*wholeGroups, weights));
+            const auto frame = settle(*streamed), truth = (*full)->render(camera);
+            ASSERT_TRUE(frame && truth);
+            if (resident == probes.size())
+            {
+                EXPECT_EQ(frame->diffuseIndirect, truth->diffuseIndirect);
+                EXPECT_EQ(frame->glossyIndirect, truth->glossyIndirect);
+            }
+            else
+            {
+                EXPECT_LT(errorOf(frame->glossyIndirect, truth->glossyIndirect), 0.5);
+                EXPECT_NEAR(meanOf(frame->glossyIndirect) / meanOf(truth->glossyIndirect), 1.0, 0.2);
+            }
+            if (before)
+            {
+                EXPECT_GT(errorOf(frame->glossyIndirect, before->glossyIndirect), 0.01) << "the light has a say";
+            }
+            before = std::move(*frame);
+        }
+        EXPECT_TRUE(streamed->stream.status());
+        // Groups that go leave the picture in their last light.
+        groups.reset();
+        const auto last = settle(*streamed);
+        ASSERT_TRUE(last);
+        EXPECT_EQ(last->glossyIndirect, before->glossyIndirect);
+    }
+}
+
+TEST_F(Streaming, LightGroupsAreMadeBeforeTheStream)
+{
+    BakeSettings few = bakeOf(64, 0);
+    BakeReport report;
+    const auto grouped = bakeLightGroups(gpu(), scene, std::span(probes).first(2), few, {{"warm", {"warm panel"}}}, {}, report);
+    ASSERT_TRUE(grouped) << grouped.error().message;
+    ASSERT_TRUE(saveField(*grouped, file));
+    auto opened = openField(file);
+    ASSERT_TRUE(opened);
+    const auto field = makeStreamedField(gpu(), opened->field, std::move(opened->maps), 1);
+    ASSERT_TRUE(field);
+    const auto stream = makeFieldStream(gpu(), *field, {});
+    ASSERT_TRUE(stream) << "in the light that it was baked in";
+    const auto late = makeLightGroups(gpu(), *field, opened->field);
+    ASSERT_FALSE(late);
+    EXPECT_EQ(late.error().code, ErrorCode::badArgument);
+    EXPECT_NE(late.error().message.find("before"), std::string::npos) << late.error().message;
 }
 
 // A quarter of the probes: those that the picture asks for most.

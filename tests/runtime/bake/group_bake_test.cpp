@@ -381,6 +381,29 @@ TEST_F(GroupBake, LightsThatCannotMoveAreRefusedBeforeTheBake)
     }
 }
 
+// A shader numbers links by a word.
+TEST_F(GroupBake, MoreLiveLinksThanAWordNamesAreRefusedBeforeTheBake)
+{
+    const Scene scene = litRoom();
+    const auto rays = TriangleRays::build(scene);
+    ASSERT_TRUE(rays);
+    BakeSettings moving = settings();
+    moving.rays = &*rays;
+    moving.resolution = 128;
+    moving.surfaceTexels = 52;
+    moving.surfaceRays = moving.liveLinks = 64;
+    constexpr uint64_t kLinksAProbe = 6 * 52 * 52 * 64, kTooMany = (1ull << 32) / kLinksAProbe + 1;
+    const std::vector<vec3> probes(kTooMany, kProbes[0]);
+    BakeReport report;
+    int begun = 0;
+    const auto refused = bakeLightGroups(
+        device.gpu(), scene, probes, moving, {}, [&](std::string_view, double) { return ++begun, true; }, report);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::badArgument);
+    EXPECT_NE(refused.error().message.find(std::to_string(kTooMany * kLinksAProbe)), std::string::npos) << refused.error().message;
+    EXPECT_EQ(begun, 0);
+}
+
 TEST_F(GroupBake, WhatHasNoSurfaceLightIsRefused)
 {
     BakeSettings bare = settings();

@@ -179,19 +179,60 @@ TEST_F(LightFieldFile, MapsInBlocksComeBackWholeAndProbeByProbe)
     EXPECT_TRUE(std::ranges::equal(radiance, std::span(field.radiance).subspan(3 * radiance.size(), radiance.size())));
 }
 
-TEST_F(LightFieldFile, MapsThatMayChangeOrAreOctahedralDoNotStream)
+// Of a probe's radiance, whichever blocks they lie across; the rest of the shares is there at once.
+TEST_F(LightFieldFile, SharesOfLightGroupsAreReadProbeByProbe)
 {
-    FieldData refined = groupedField(); // what contradicts itself where a share is taken for another
-    refined.surfaceLight[0] = gpu::kRefinedWord;
-    for (LightGroup& group : refined.groups) group.surfaceLight[0] = gpu::kRefinedWord;
-    for (const FieldData& field : {groupedField(), refined, smallField(gpu::kChartOctahedral)})
+    for (const auto& [size, probes] : {std::pair{16u, 120u}, {128u, 5u}}) // many probes a block, and one
     {
+        FieldData field = smallField(gpu::kChartCube, size, probes);
+        for (uint32_t g = 0; g < 3; ++g)
+        {
+            LightGroup group{{"group " + std::to_string(g), {"desk"}},
+                             vec3(0.1f * float(g)),
+                             {vec3(1.5f)},
+                             field.radiance,
+                             field.irradiance,
+                             field.prefiltered,
+                             field.surfaceLight};
+            for (size_t i = 0; i < group.radiance.size(); ++i) group.radiance[i] = uint32_t(977 * i + g);
+            group.irradiance[0] = 40 + g;
+            field.groups.push_back(std::move(group));
+        }
         ASSERT_TRUE(saveField(field, file));
-        const auto opened = openField(file);
-        ASSERT_FALSE(opened);
-        EXPECT_EQ(opened.error().code, ErrorCode::badArgument);
-        EXPECT_NE(opened.error().message.find("can't be read while frames are drawn"), std::string::npos) << opened.error().message;
+        expectSame(field, *loadField(file));
+        auto opened = openField(file);
+        ASSERT_TRUE(opened) << opened.error().message;
+        const size_t words = opened->maps.distanceWords(), colors = opened->maps.radianceWords();
+        ASSERT_EQ(opened->maps.groups(), 3u);
+        ASSERT_EQ(probes * colors, field.radiance.size());
+        std::vector<uint32_t> distance(words), shares(3 * colors);
+        for (const uint32_t probe : {0u, probes - 1, probes / 2, 1u})
+        {
+            const Status status = opened->maps.readShares(probe, distance, shares);
+            ASSERT_TRUE(status) << status.error().message;
+            EXPECT_TRUE(std::ranges::equal(distance, std::span(field.distance).subspan(probe * words, words))) << probe;
+            for (size_t g = 0; g < 3; ++g)
+                EXPECT_TRUE(std::ranges::equal(std::span(shares).subspan(g * colors, colors),
+                                               std::span(field.groups[g].radiance).subspan(probe * colors, colors)))
+                    << "probe " << probe << ", group " << g;
+        }
+        for (size_t g = 0; g < 3; ++g)
+        {
+            EXPECT_TRUE(opened->field.groups[g].radiance.empty());
+            EXPECT_EQ(opened->field.groups[g].irradiance, field.groups[g].irradiance);
+            EXPECT_EQ(opened->field.groups[g].prefiltered, field.groups[g].prefiltered);
+            EXPECT_EQ(opened->field.groups[g].surfaceLight, field.groups[g].surfaceLight);
+        }
     }
+}
+
+TEST_F(LightFieldFile, OctahedralMapsDoNotStream)
+{
+    ASSERT_TRUE(saveField(smallField(gpu::kChartOctahedral), file));
+    const auto opened = openField(file);
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().code, ErrorCode::badArgument);
+    EXPECT_NE(opened.error().message.find("can't be read while frames are drawn"), std::string::npos) << opened.error().message;
 }
 
 TEST_F(LightFieldFile, RoundTripGivesBackEveryField)
