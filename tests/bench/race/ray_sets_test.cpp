@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "bench/opponents/baselines.h"
 #include "tests/support/test_scenes.h"
 
 namespace sconce
@@ -35,6 +36,10 @@ TEST(GlossyRays, LeaveTheirSurfaceAndHitWhatAClosedRoomHas)
         hits += set->truth[i].hit;
         EXPECT_LT(glm::dot(set->truth[i].normal, set->directions[i]), 1e-6f);
         EXPECT_LT(glm::length(set->origins[i] + set->truth[i].t * set->directions[i] - set->truth[i].position), 1e-4f) << i;
+        // Opponents that start further off are judged by what a ray from there meets.
+        const auto farther = rays->closest(set->origins[i] + kFartherStart * set->normals[i], set->directions[i]);
+        ASSERT_EQ(farther.has_value(), set->fartherTruth[i].hit) << i;
+        EXPECT_EQ(farther ? farther->t : 0.0f, set->fartherTruth[i].hit ? set->fartherTruth[i].t : 0.0f) << i;
     }
     EXPECT_GE(hits, 4999u); // closed; robust Embree may lose one on an edge
 }

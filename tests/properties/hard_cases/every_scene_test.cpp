@@ -172,6 +172,45 @@ TEST_P(EveryScene, DeepAndShallowOctreesGiveTheSameAnswers)
     expectAtMost(row("octrees of 1, 5 and 6 levels: rays stopped by the limit, or not finite"), 3 * kRays, double(limits), 0.0);
 }
 
+/// From surfaces to one another, and out of the scene, where nothing is within 0.5 % of the diagonal before the light.
+TEST_P(EveryScene, ShadowRaysAgreeWithEmbree)
+{
+    twin::LightFieldTwin<float> text(made->field, defaultQuality());
+    const float diagonal = bounds.diagonal();
+    for (const bool outside : {false, true})
+    {
+        size_t asked = 0, lit = 0, dark = 0;
+        for (size_t i = 0; i < kRays; ++i)
+        {
+            Random random(20, 6 + outside, i);
+            const RayTruth& end = glossy.truth[random.below(kRays)];
+            const vec3 side = glossy.normals[i], point = glossy.origins[i];
+            vec3 direction = unitVector(random);
+            float far = 1e30f;
+            if (!outside)
+            {
+                far = glm::distance(point, end.position);
+                direction = (end.position - point) / far;
+            }
+            if ((!outside && !end.hit) || !(glm::dot(direction, side) > 0.05f) || far < 0.05f * diagonal) continue;
+            ++asked;
+            const bool free = !made->rays.occluded(point, direction, outside ? far : far - 0.005f * diagonal);
+            const bool reaches = text.lightReaches(point, direction, far, side);
+            lit += reaches && !free;
+            dark += !reaches && free;
+        }
+        ASSERT_GT(asked, kRays / 4);
+        // Of maps of 64 texels a face (curtains 128): what stands within a texel of the light hides it.
+        const std::string to = outside ? "shadow rays to the sky: share " : "shadow rays between surfaces: share ";
+        expectAtMost(row((to + "wrongly lit").c_str()), asked, double(lit) / double(asked),
+                     outside ? bound({{"cornell", 0.003}, {"temple", 0.005}, {"town", 0.014}, {"sponza", 0.004}})
+                             : bound({{"cornell", 0.015}, {"temple", 0.005}, {"curtains", 0.004}, {"town", 0.02}, {"sponza", 0.07}}));
+        expectAtMost(row((to + "wrongly dark").c_str()), asked, double(dark) / double(asked),
+                     outside ? bound({{"temple", 0.006}, {"town", 0.011}, {"sponza", 0.005}})
+                             : bound({{"cornell", 0.07}, {"temple", 0.03}, {"curtains", 0.006}, {"town", 0.04}, {"sponza", 0.045}}));
+    }
+}
+
 /// Whether a float look-up is off by over 1e-3 from double in some channel.
 bool differs(vec3 a, glm::dvec3 b)
 {

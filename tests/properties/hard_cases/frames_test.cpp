@@ -114,7 +114,8 @@ TEST_F(HardFrames, RoughnessExactlyZeroAndOneAgainstThePathTracer)
         // Of the scene itself, so that what surfaces throw on others has it, too: the frame's own setting is of what the eye sees alone.
         Scene scene = cornell();
         for (Material& material : scene.materials) material.roughness = roughness;
-        const auto field = bakeField(scene, kCornellProbes, 128);
+        // As users bake: rays to triangles, default maps and texels, one of which would be as wide as what a mirror of this box shows.
+        const auto field = bakeByTriangles(scene, kCornellProbes, bakeOf(knobs::resolution.value, 2, knobs::surfaceTexels.value));
         ASSERT_TRUE(field) << field.error().message;
         RenderSettings settings = settingsOf(64);
         settings.glossyRays = 8;
