@@ -38,7 +38,8 @@ row = {"label": label, "camera": camera}
 for key, method in (("grid", "grid"), ("ours", "sdf")):
     error = json.load(open(f"{view}.{method}.error.json"))
     row |= {f"{key}_mse": f"{error['mse']:.3g}", f"{key}_relmse": f"{error['relmse']:.4f}", f"{key}_flip": f"{error['flip']:.3f}"}
-print(f'  "{re.sub("[^a-z0-9]+", "_", f"{label.split(",")[0]} {camera}".lower())}": {json.dumps(row)},')
+name = label.split(",")[0] + " " + camera
+print(f'  "{re.sub("[^a-z0-9]+", "_", name.lower())}": {json.dumps(row)},')
 P
     done
 }
