@@ -532,9 +532,8 @@ inline constexpr Knob<uint32_t> resident{.name = "resident",
                                          .unit = "probes",
                                          .inWords = "all",
                                          .what = "Probes whose maps are on the device at a time, those that the picture asks for",
-                                         .buys =
-                                             "worlds larger than memory (FieldStream): most of a light field are its maps; what no "
-                                             "probe that is there sees gets light of the open",
+                                         .buys = "worlds larger than memory (FieldStream): most of a light field are its maps; what no "
+                                                 "probe that is there sees gets light of the open",
                                          .readme = true};
 inline constexpr Knob<float> raysBelow{.name = "raysBelow",
                                        .option = "render --rays-below",
@@ -661,26 +660,26 @@ inline constexpr Knob<float> light{.name = "light", // each component of it
 
 // ---- the tracer
 
-inline constexpr Knob<int> ranked{.name = "ranked",
-                                  .member = "Quality::trace.ranked",
-                                  .value = 4,
-                                  .least = 1,
-                                  .most = 4,
-                                  .unit = "probes",
-                                  .what = "Probes of a leaf that are asked",
-                                  .buys =
-                                      "probes of a voxel that a ray may ask: 2 leave 2.6 times as many rays unresolved, for 2 to 4 % of the time",
-                                  .readme = true};
-inline constexpr Knob<float> opinion{
-    .name = "opinion",
-    .member = "Quality::trace.opinion",
-    .value = 1e-3f,
-    .least = 0.0f,
-    .most = 1.0f,
-    .unit = "diagonals",
-    .what = "Size of a texel from which on a hit in it is asked of a nearer probe; 0: never",
-    .buys = "hits in larger texels are asked of a nearer probe: 0.3 points more exact hits for 7 % more reads",
+inline constexpr Knob<int> ranked{
+    .name = "ranked",
+    .member = "Quality::trace.ranked",
+    .value = 4,
+    .least = 1,
+    .most = 4,
+    .unit = "probes",
+    .what = "Probes of a leaf that are asked",
+    .buys = "probes of a voxel that a ray may ask: 2 leave 2.6 times as many rays unresolved, for 2 to 4 % of the time",
     .readme = true};
+inline constexpr Knob<float> opinion{.name = "opinion",
+                                     .member = "Quality::trace.opinion",
+                                     .value = 1e-3f,
+                                     .least = 0.0f,
+                                     .most = 1.0f,
+                                     .unit = "diagonals",
+                                     .what = "Size of a texel from which on a hit in it is asked of a nearer probe; 0: never",
+                                     .buys =
+                                         "hits in larger texels are asked of a nearer probe: 0.3 points more exact hits for 7 % more reads",
+                                     .readme = true};
 inline constexpr Knob<int> maxHandoffs{.name = "maxHandoffs",
                                        .member = "Quality::trace.maxHandoffs",
                                        .value = 24,

@@ -174,7 +174,8 @@ TEST_F(Streaming, MapsInBlocksComeTheSameWayAndMakeNearlyThePictureOfTexels)
 TEST_F(Streaming, LightGroupsAreMixedAsTheirMapsCome)
 {
     BakeReport report;
-    auto grouped = bakeLightGroups(gpu(), scene, probes, bakeOf(), {{"warm", {"warm panel"}}}, {}, report);
+    const std::span few = std::span(probes).first(8);
+    auto grouped = bakeLightGroups(gpu(), scene, few, bakeOf(64, 1), {{"warm", {"warm panel"}}}, {}, report);
     ASSERT_TRUE(grouped) << grouped.error().message;
     ASSERT_EQ(grouped->groups.size(), 2u);
     ASSERT_TRUE(saveField(*grouped, file));
@@ -184,7 +185,7 @@ TEST_F(Streaming, LightGroupsAreMixedAsTheirMapsCome)
     auto wholeGroups = makeLightGroups(gpu(), *wholeField, *grouped);
     ASSERT_TRUE(wholeGroups) << wholeGroups.error().message;
 
-    for (const uint32_t resident : {uint32_t(probes.size()), 5u})
+    for (const uint32_t resident : {uint32_t(few.size()), 3u})
     {
         groups.reset();
         auto streamed = open(resident);
@@ -197,7 +198,7 @@ TEST_F(Streaming, LightGroupsAreMixedAsTheirMapsCome)
             ASSERT_TRUE(dim(*groups, weights) && dim(*wholeGroups, weights));
             const auto frame = settle(*streamed), truth = (*full)->render(camera);
             ASSERT_TRUE(frame && truth);
-            if (resident == probes.size())
+            if (resident == few.size())
             {
                 EXPECT_EQ(frame->diffuseIndirect, truth->diffuseIndirect);
                 EXPECT_EQ(frame->glossyIndirect, truth->glossyIndirect);
