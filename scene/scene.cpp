@@ -250,13 +250,23 @@ float meanCoverage(const Scene& scene, uint32_t triangle)
     return meanOver(scene, triangle, [&](vec2 uv) { return coverage(scene, index, uv); });
 }
 
+bool emitsAlike(const Material& material)
+{
+    return isOpaque(material) && material.emissionTexture.image < 0;
+}
+
+vec3 emissionAt(const Scene& scene, uint32_t material, vec2 uv)
+{
+    return coverage(scene, material, uv) * evaluateMaterial(scene, material, uv).emission;
+}
+
 vec3 meanEmission(const Scene& scene, uint32_t triangle)
 {
     const uint32_t index = scene.triangleMaterial[triangle];
     const Material& material = scene.materials[index];
     if (material.emission == vec3(0.0f)) return vec3(0.0f);
-    if (isOpaque(material) && material.emissionTexture.image < 0) return material.emission;
-    return meanOver(scene, triangle, [&](vec2 uv) { return coverage(scene, index, uv) * evaluateMaterial(scene, index, uv).emission; });
+    if (emitsAlike(material)) return material.emission;
+    return meanOver(scene, triangle, [&](vec2 uv) { return emissionAt(scene, index, uv); });
 }
 
 std::string validate(const Scene& scene)

@@ -151,6 +151,12 @@ bool hasNormalTextures(const Scene& scene);
 /// The normal texture's value at a uv, [0,1]; (0.5, 0.5, 1) where there is none.
 vec3 readNormalTexture(const Scene& scene, uint32_t material, vec2 uv);
 
+/// Whether a material emits alike all over: neither a texture nor alpha has a say.
+bool emitsAlike(const Material& material);
+
+/// Radiance that a point emits: none where it isn't there.
+vec3 emissionAt(const Scene& scene, uint32_t material, vec2 uv);
+
 /// Mean radiance that a triangle emits, over all of its area: points that are not there emit nothing. By 144 points where textures have a
 /// say.
 vec3 meanEmission(const Scene& scene, uint32_t triangle);

@@ -114,11 +114,10 @@ private:
         for (size_t i = 0; i < sampled.size(); ++i)
         {
             const uint32_t triangle = emitters[sampled[i]].triangle, index = scene.triangleMaterial[triangle];
-            const Material& material = scene.materials[index];
-            if (!material.blended && material.alphaCutoff <= 0.0f && material.emissionTexture.image < 0) continue;
+            if (emitsAlike(scene.materials[index])) continue;
             const uvec3 corner = scene.triangles[triangle];
             const vec2 uv = shares[i].x * scene.uvs[corner.x] + shares[i].y * scene.uvs[corner.y] + shares[i].z * scene.uvs[corner.z];
-            shown[i] = coverage(scene, index, uv) * evaluateMaterial(scene, index, uv).emission;
+            shown[i] = emissionAt(scene, index, uv);
             carried[sampled[i]] += double(luminance(shown[i]));
             ++count[sampled[i]];
         }
