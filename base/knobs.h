@@ -569,6 +569,14 @@ inline constexpr Knob<bool> temporal{.name = "temporal",
                                      .value = false,
                                      .what =
                                          "Filters over time, too: each of --frames N takes new random rays and blends with the one before"};
+inline constexpr Knob<bool> screenTrace{.name = "screenTrace",
+                                        .option = "render --screen-trace",
+                                        .member = "IndirectEffects::screenTrace",
+                                        .value = false,
+                                        .what =
+                                            "Traced reflections show what the picture of the frame before does where their rays meet it; "
+                                            "from the second of --frames on",
+                                        .buys = "what no probe knows is reflected where the eye sees it"};
 inline constexpr Knob<float> normalOffset{.name = "normalOffset",
                                           .member = "FrameView::normalOffset", // in metres there
                                           .value = 1e-4f,

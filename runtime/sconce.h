@@ -329,9 +329,9 @@ public:
     /// eighth shape at least.
     /// Errors: badArgument (more than Desc::movingShapes, or the first shape that is none: named); what was set before stays.
     Status setShapes(std::span<const MovingShape> shapes);
-    /// Record frames in the order in which they are shown, where the effect `temporal` is on. The G-buffer must be visible to compute
-    /// shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the barrier that lets
-    /// any later stage read these.
+    /// Record frames in the order in which they are shown, where the effect `temporal` or `screenTrace` is on. The G-buffer must be visible
+    /// to compute shaders' sampled reads by then. Begins by waiting for whoever reads the outputs of the frame before, ends with the
+    /// barrier that lets any later stage read these.
     /// @param view  of Desc's size, which is drawn whatever it says; LightField::frameView() gives it every default
     /// @param timer  optional; scopes "classify tiles", "gather light", "surface light", "diffuse trace", "glossy trace", "mirror trace",
     ///               "diffuse fill", "glossy fill", "glossy denoise", "moving shapes", "lamp light"

@@ -2,6 +2,8 @@
 #include "tiles.glsl"
 #include "sparse.glsl"
 #include "moving_shapes.glsl"
+#include "lamps.glsl"
+#include "screen_trace.glsl"
 
 // Light by traced rays, by SCONCE_QUERY: a query of the light field, which is included before. kTermGlossy: GGX visible-normal rays; kTermMirror: the one mirrored ray; kTermDiffuse: cosine-weighted rays, whose
 // mean radiance has emitters and sky in it, with soft shadows at a cost that doesn't know their number. Dispatch: see findPixel, or sparseRuns; of each 2^kEveryLog
@@ -11,6 +13,7 @@ layout(constant_id = kTermId) const uint kTerm = kTermGlossy;
 layout(constant_id = kCountId) const bool kCount = true; // write the counts
 layout(constant_id = kUntintedId) const bool kUntinted = false; // reflections are stored before the surface's tint, for filters
 layout(constant_id = kMovingId) const bool kMoving = false; // rays meet shapes that move
+layout(constant_id = kScreenId) const bool kScreen = false; // and what the picture shows
 layout(set = 1, binding = kTraceLightBinding, rgba16f) writeonly uniform image2D reflected; // rgb: radiance reflected to the eye, of diffuse rays that arrives; a: mean hit distance, metres
 layout(set = 1, binding = kTraceCountsBinding, rgba32ui) writeonly uniform uimage2D counts;  // probe of the last ray, hand-offs, reads, unknown rays
 
@@ -56,6 +59,7 @@ void trace(ivec2 at, Pixel p, uint terms)
         vec3 origin = p.position + frame.normalOffset * p.normal;
         RayHit hit = SCONCE_QUERY(origin, s.direction, p.normal);
         if (kMoving) meetShapes(origin, s.direction, p.normal, hit);
+        if (kScreen) meetScreen(origin, s.direction, hit);
         result += vec4(s.weight * hit.radiance, hit.t);
         count.x = hit.probe;
         count.y += uint(hit.handoffs);

@@ -374,6 +374,11 @@ Result<Asked> prepare(const RenderOptions& options, const Context& context)
     // Before the scene is loaded: a misspelt layer should cost no waiting.
     if (const std::string problem = options.pictures.problem(options.fromField ? kFieldLayers : frameLayers()); !problem.empty())
         return Error{ErrorCode::badArgument, problem};
+    if (options.screenTrace && (options.frames < 2 || !options.sunPath.empty()))
+        return Error{ErrorCode::badArgument,
+                     fmt::format("--screen-trace shows what the frame before does, and {}; give --frames 2 or more{}.",
+                                 options.sunPath.empty() ? "there is but one frame" : "each picture of --sun-path is a first one",
+                                 options.sunPath.empty() ? "" : ", without --sun-path")};
     if (options.sunPath.empty()) // whose pictures have numbers
         if (Status status = options.pictures.writable(); !status) return status.error();
     const Result<std::vector<LightGroupDesc>> groups = groupsOf(options.groups);
@@ -484,6 +489,7 @@ Json reportOf(const RenderOptions& options, const Asked& asked, const OnDevice& 
     json["diffuse"] = asked.diffuse;
     json["area_shadows"] = options.areaShadows;
     json["temporal"] = settings.effects.temporal;
+    json["screen_trace"] = settings.effects.screenTrace;
     json["frames"] = options.frames;
     json["dim"] = options.dims;
     json["shapes"] = options.shapes.file;
@@ -616,7 +622,7 @@ void addRenderCommand(CLI::App& app, Context& context)
     // What only geometry's pixels have.
     for (const char* other :
          {"--effects", "--rays-below", "--diffuse", "--area-shadows", "--area-samples", "--trace-every", "--surface-probes", "--no-denoise",
-          "--temporal", "--roughness", "--sun-path", "--shapes", "--resident", "--seed", "--warm-up"})
+          "--temporal", "--screen-trace", "--roughness", "--sun-path", "--shapes", "--resident", "--seed", "--warm-up"})
         fromField->excludes(command->get_option(other));
     onChosen(command, context, options, runRender);
 }

@@ -31,6 +31,7 @@ void addFrameOptions(CLI::App* command, FrameChoice& choice)
     addKnob(command, "--surface-probes", choice.surfaceProbes, knobs::surfaceProbes);
     addSwitch(command, "--no-denoise", choice.noDenoise, knobs::denoise);
     addSwitch(command, "--temporal", choice.temporal, knobs::temporal);
+    addSwitch(command, "--screen-trace", choice.screenTrace, knobs::screenTrace);
     addKnob(command, "--roughness", choice.roughness, knobs::roughness, "R");
     addKnob(command, "--seed", choice.seed, knobs::frameSeed);
 }
@@ -75,6 +76,7 @@ Result<RenderSettings> settingsFor(const FrameChoice& choice, const EffectPlan& 
     settings.effects = plan.indirect();
     settings.effects.denoise = settings.effects.denoise && !choice.noDenoise;
     settings.effects.temporal = choice.temporal;
+    settings.effects.screenTrace = choice.screenTrace;
     settings.effects.surfaceLight = diffuse == kSurface;
     settings.effects.tracedDiffuse = diffuse == kTraced;
     settings.effects.patches = diffuse == kPatches;

@@ -29,7 +29,7 @@ struct FrameChoice
     uint32_t areaSamples = 0; // 0: by samples
     std::optional<float> roughness;
     float raysBelow = knobs::raysBelow.value;
-    bool noDenoise = !knobs::denoise.value, temporal = knobs::temporal.value;
+    bool noDenoise = !knobs::denoise.value, temporal = knobs::temporal.value, screenTrace = knobs::screenTrace.value;
     std::string diffuse{knobs::diffuse.value}; // empty: surface, irradiance where the field has no surface light
     std::string areaShadows{knobs::areaShadows.value};
 

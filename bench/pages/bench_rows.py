@@ -599,6 +599,16 @@ def moving(arguments):
             row |= {f"{kind}_{mask}_mse_ratio": f"{total(0, 'mse') / total(1, 'mse'):.3f}", f"{kind}_{mask}_relmse": f"{total(0, 'relmse'):.4f}",
                     f"{kind}_{mask}_relmse_untold": f"{total(1, 'relmse'):.4f}", f"{kind}_{mask}_mean": f"{total(0, 'mean'):.3f}",
                     f"{kind}_{mask}_mean_untold": f"{total(1, 'mean'):.3f}", f"{kind}_{mask}_worst": f"{max(told['mse'] / untold['mse'] for told, untold in pairs):.2f}"}
+            if mask != "reflection":
+                continue
+            for way in ("seen", "both"): # by rays that meet what the picture shows, of shapes untold and told
+                of = [error for error in (load(f"{name}.{way}.{layer}.error") for name in names) if error]
+                row |= {f"{kind}_{mask}_{way}_mse_ratio": f"{sum(error['mse'] for error in of) / len(of) / total(1, 'mse'):.3f}",
+                        f"{kind}_{mask}_{way}_relmse": f"{sum(error['relmse'] for error in of) / len(of):.4f}", f"{kind}_{mask}_{way}_mean": f"{sum(error['mean'] for error in of) / len(of):.3f}"}
+        seen = [load(f"{name}.seen") for name in names]
+        traces = lambda frames: sum(frame["passes_ms"].get(name, 0.0) for frame in frames for name in ("glossy trace", "mirror trace"))
+        if (untold := traces([load(f"{name}.untold") for name in names])) > 0:
+            row |= {f"{kind}_seen_trace_ratio": f"{traces(seen) / untold:.3f}"}
         frames = [(load(f"{name}.told"), load(f"{name}.untold")) for name in names]
         row |= {f"{kind}_pass_ms": f"{sum(told['passes_ms'].get('moving shapes', 0.0) for told, _ in frames) / len(frames):.1f}",
                 f"{kind}_frame_ratio": f"{sum(told['frame_ms'] for told, _ in frames) / sum(untold['frame_ms'] for _, untold in frames):.3f}"}
@@ -610,6 +620,7 @@ def movings(arguments):
     write("moving_shapes.json", "A walking figure of ten shapes and a door, eight poses each, that the field doesn't know", ["bench/pages/moving_table.sh"],
           ["masks by the reference with and without the shape: shadow and reflection: light of surfaces that stayed, where it changed by over a tenth; object: what shows it",
            "mse_ratio: of the mean squared error with the light told of the shapes over that without, means over poses; worst: of one pose",
+           "seen, both: with --screen-trace, of shapes untold and told, over untold without; trace_ratio: time of the traces, seen over untold",
            "pass: over diffuse light and rough reflections; frame_ratio: the whole frame's time, told over untold"], rows)
 
 

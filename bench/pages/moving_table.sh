@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What moves and is in no light field: eight poses each of a walking figure and of a door, drawn with and without telling the light of them, against the
-# path tracer, by masks: the light of surfaces that stayed where it changed by over a tenth (diffuse: shadows; glossy: reflections), and the shapes
+# What moves and is in no light field: eight poses each of a walking figure and of a door, drawn with and without telling the light of them, and with rays
+# that meet what the picture shows of them, against the path tracer, by masks: the light of surfaces that stayed where it changed by over a tenth (diffuse: shadows; glossy: reflections), and the shapes
 # themselves. Writes bench/results/moving_shapes.json. Environment: SCONCE=the command, built when not given, SIZE=WxH [320x180], SPP=paths a pixel
 # [256], POSES=n of each [8], OUT=folder, whose fields and references are kept [out/moving].
 set -euo pipefail
@@ -38,7 +38,9 @@ print(",".join(f"{p + s * (q - p):.4g}" for p, q in zip(a, b)))' "$from" "$to" "
             [[ -f $pose.ref.exr ]] || "$sconce" reference "$scene" "${camera[@]}" --shapes "$pose.json" --spp "$spp" --bounces 8 --pixel-centre --parts -o "$pose.ref.exr" --quiet > /dev/null
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --frames 3 -o "$pose.told.exr" --png "$pose.png" --json --quiet > "$pose.told.json"
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --drawn-only --frames 3 -o "$pose.untold.exr" --json --quiet > "$pose.untold.json"
-            for picture in told untold; do
+            "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --drawn-only --screen-trace --frames 5 -o "$pose.seen.exr" --json --quiet > "$pose.seen.json"
+            "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --screen-trace --frames 5 -o "$pose.both.exr" --png "$pose.both.png" --json --quiet > "$pose.both.json"
+            for picture in told untold seen both; do
                 for mask in "diffuse_indirect" "glossy_indirect" "beauty --new-surface"; do
                     "$sconce" compare "$pose.$picture.exr" "$pose.ref.exr" --changed-from "$at.ref.exr" --layer ${mask} --metric mse,relmse,mean --json > "$pose.$picture.${mask%% *}.error.json" 2> /dev/null || echo '{}' > "$pose.$picture.${mask%% *}.error.json" # nothing has changed there
                 done

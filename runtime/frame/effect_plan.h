@@ -27,7 +27,9 @@ struct IndirectEffects
     bool mirror = true;                    // the one ray of perfect mirrors
     bool denoise = knobs::denoise.value;   // of the glossy term
     bool temporal = knobs::temporal.value; // filter over time, too, what is filtered over the picture
-    bool tiles = true;                     // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
+    bool screenTrace =
+        knobs::screenTrace.value; // traced reflections show what the picture of the frame before does, too, where they meet it
+    bool tiles = true;            // run each pass on the tiles that need it; false: over the whole picture, with the same pixels
 };
 
 /// Whether frames with these effects read diffuse light from the field's surface light.

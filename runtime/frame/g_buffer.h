@@ -15,6 +15,11 @@ struct FrameInputs
                                                     // gpu::kRetro more where the surface is retroreflective
     VkImageView baseColorMetallic = VK_NULL_HANDLE; // rgb linear, a metallic
     VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    // With the effect screenTrace, which has no other way to it, not null: of the G-buffer's size, rgb radiance to the eye, linear and
+    // before any tone, of the frame that FrameView says this one follows; written on the same queue. What has moved since shows, for a
+    // frame, what was there before it along the edge that it moves to; what moves behind an edge, likewise.
+    VkImageView pictureBefore = VK_NULL_HANDLE;
+    VkImageLayout pictureLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
 };
 
 } // namespace sconce

@@ -40,6 +40,15 @@ std::string problemOf(const Gpu& gpu, const LightField& field, const IndirectLig
     return {};
 }
 
+/// The inverse of FrameView::worldFromClip, with w above 0 before the eye: that of clip space is, and a matrix may be scaled by any number.
+mat4 clipFromWorldOf(const mat4& worldFromClip)
+{
+    const glm::dmat4 to(worldFromClip), from = glm::inverse(to);
+    const glm::dvec4 point = to * glm::dvec4(0.0, 0.0, 0.5, 1.0);
+    const double w = (from * (point / point.w)).w;
+    return mat4(w < 0.0 ? -from : from);
+}
+
 } // namespace
 
 Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const char* what)
@@ -52,15 +61,20 @@ Status IndirectLight::State::makeImage(GpuImage& target, VkFormat format, const 
 
 /// @param images     each with its binding; what a pass lacks of them is bound to something that is there
 /// @param constants  besides the field's and whether the pass runs on tiles
+/// @param traces     it is trace_glossy.comp, which may ask the picture
 Status IndirectLight::State::makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
-                                      std::vector<ShaderConstant> constants)
+                                      std::vector<ShaderConstant> constants, bool traces)
 {
     std::vector<DescriptorSet::Binding> bindings = {{gpu::kTileBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                                                     {gpu::kMovingBinding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (const Bound& bound : images) bindings.push_back({bound.binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE});
+    if (traces)
+        bindings.insert(bindings.end(), {{gpu::kPictureBeforeBinding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                                         {gpu::kScreenBinding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}});
     auto made = makeFrameSet(*gpu, frame, bindings);
     if (!made) return made.error();
     set = std::move(*made);
+    if (traces) set.write(gpu::kScreenBinding, screen ? screen : frame);
     for (const Bound& bound : images) set.write(bound.binding, bound.image->view(), VK_IMAGE_LAYOUT_GENERAL);
     set.write(gpu::kTileBinding, tileList->buffer());
     set.write(gpu::kMovingBinding, moving ? moving : tileList->buffer()); // of few passes; what isn't read is bound all the same
@@ -101,7 +115,9 @@ Status IndirectLight::State::makeTrace(uint32_t term, GpuImage& image, Pipeline&
                      {gpu::kCountId, counts ? 1u : 0u},
                      {gpu::kEveryLogId, term == gpu::kTermMirror ? 0u : everyLog()},
                      {gpu::kUntintedId, untinted(term)},
-                     {gpu::kMovingId, moving ? 1u : 0u}});
+                     {gpu::kMovingId, moving ? 1u : 0u},
+                     {gpu::kScreenId, asksPicture() && term != gpu::kTermDiffuse ? 1u : 0u}},
+                    true);
 }
 
 Status IndirectLight::State::makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set)
@@ -223,6 +239,12 @@ Status IndirectLight::State::make()
     if (!block) return block.error();
     frame = std::move(*block);
     const IndirectEffects& effects = desc.effects;
+    if (asksPicture())
+    {
+        auto made = gpu->makeBuffer(sizeof(mat4), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::device, "clip space of the picture");
+        if (!made) return made.error();
+        screen = std::move(*made);
+    }
     if (desc.movingShapes > 0)
     {
         auto made = gpu->makeBuffer(kMovingBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::device, "shapes that move");
@@ -263,9 +285,10 @@ Status IndirectLight::State::make()
     if (auto s = makeFill(gpu::kTermGlossy, glossyImage, glossyFill, glossyFillSet); !s) return s;
     if (!effects.denoise) return success();
     if (auto s = makeImage(scratch, kLightFormat, "scratch of the glossy filter"); !s) return s;
-    auto made = Denoiser::create(
-        *gpu, {field.layout(), gpu::kTermGlossy, true, effects.temporal, desc.movingShapes > 0, tileList.get(), desc.width, desc.height},
-        frame, glossyImage, scratch);
+    auto made = Denoiser::create(*gpu,
+                                 {field.layout(), gpu::kTermGlossy, true, effects.temporal, desc.movingShapes > 0 || asksPicture(),
+                                  tileList.get(), desc.width, desc.height},
+                                 frame, glossyImage, scratch);
     if (!made) return made.error();
     denoiser = std::move(*made);
     return success();
@@ -297,6 +320,10 @@ void IndirectLight::State::setInputs(const FrameInputs& inputs)
                                     {&movingDiffuse[0], &movingDiffuseSet},
                                     {&movingRough[0], &movingRoughSet}})
         if (*pass) writeInputs(*set, inputs);
+    // What isn't asked is bound all the same.
+    const VkImageView picture = asksPicture() ? inputs.pictureBefore : inputs.baseColorMetallic;
+    for (const auto& [pass, set] : {std::pair{&glossyPass, &glossySet}, {&mirrorPass, &mirrorSet}, {&diffusePass, &diffuseSet}})
+        if (*pass) set->write(gpu::kPictureBeforeBinding, picture, asksPicture() ? inputs.pictureLayout : inputs.layout);
     if (tileList) tileList->setInputs(inputs);
     if (denoiser) denoiser.setInputs(inputs);
 }
@@ -370,11 +397,16 @@ void IndirectLight::State::Recording::begin(const gpu::FrameView& view)
     const Gpu& gpu = *state.gpu;
     // Write after read and after write: view, lists, counts and images are the same ones each frame. The frame before may still read its
     // outputs in whatever stage the host composes in, a fragment shader or a blit, so all of them are waited for. Once for all that a frame
-    // writes anew.
+    // writes anew; and for the picture of the frame before, whatever stage drew it, where rays ask it.
     memoryBarrier(gpu, cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, kTransfer | kCompute,
-                  VK_ACCESS_2_MEMORY_WRITE_BIT);
+                  VK_ACCESS_2_MEMORY_WRITE_BIT | (state.screen ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT : 0));
     // Recorded, not written by the host: the frame before may still run with its own view.
     gpu.vk.CmdUpdateBuffer(cmd, state.frame.handle(), 0, sizeof(view), &view);
+    if (state.screen)
+    {
+        const mat4 clip = clipFromWorldOf(view.worldFromClip);
+        gpu.vk.CmdUpdateBuffer(cmd, state.screen.handle(), 0, sizeof(clip), &clip);
+    }
     if (state.tileList) state.tileList->clear(cmd);
     if (state.moving) gpu.vk.CmdUpdateBuffer(cmd, state.moving.handle(), 0, state.shapeBytes.size(), state.shapeBytes.data());
     // Traces write where rays start; the other pixels must not keep the counts of the frame before.
@@ -511,7 +543,7 @@ void IndirectLight::State::record(VkCommandBuffer cmd, const gpu::FrameView& vie
 
 uint64_t IndirectLight::State::deviceBytes() const
 {
-    uint64_t bytes = frame.size() + (moving ? moving.size() : 0) + (tileList ? tileList->deviceBytes() : 0);
+    uint64_t bytes = frame.size() + (screen ? screen.size() : 0) + (moving ? moving.size() : 0) + (tileList ? tileList->deviceBytes() : 0);
     for (const GpuImage* image : {&glossyImage, &scratch, &mirrorImage, &countImage, &diffuseImage, &roughImage})
         if (*image) bytes += image->bytes();
     return bytes + denoiser.deviceBytes();

@@ -29,6 +29,7 @@ struct IndirectLight::State
     Desc desc;
     LightShaders shaders;
     Buffer frame;
+    Buffer screen;                     // clipFromWorld of the frame, of screen_trace.glsl; null: rays don't ask the picture
     Buffer moving;                     // gpu::MovingShapesHead, shapes, their light; null: nothing moves
     std::vector<std::byte> shapeBytes; // of the next frame
     std::array<bool, 2> kindsMove{};   // round shapes, boxes
@@ -64,13 +65,14 @@ private:
         const GpuImage* image;
     };
     Status makePass(Pipeline& pipeline, DescriptorSet& set, Spirv shader, std::initializer_list<Bound> images,
-                    std::vector<ShaderConstant> constants);
+                    std::vector<ShaderConstant> constants, bool traces = false);
     Status makeTrace(uint32_t term, GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeFill(uint32_t term, const GpuImage& image, Pipeline& pipeline, DescriptorSet& set);
     Status makeGather();
     uint32_t everyLog() const { return uint32_t(std::countr_zero(desc.traceEvery)); }
     uint32_t untinted(uint32_t term) const { return term == gpu::kTermGlossy && desc.effects.denoise ? 1 : 0; } // gpu::kUntintedId
     bool mirrorsInGlossy() const { return desc.effects.tiles && desc.effects.glossy && desc.effects.mirror; }
+    bool asksPicture() const { return desc.effects.screenTrace && (desc.effects.glossy || desc.effects.mirror); }
     bool tracesDiffuse() const { return desc.effects.diffuse && desc.effects.tracedDiffuse; }
     bool gathersDiffuse() const { return desc.effects.diffuse && !tracesDiffuse() && !readsSurfaces(); }
     std::vector<TileList::LookUps> lookUps() const;

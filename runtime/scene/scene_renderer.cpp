@@ -131,7 +131,12 @@ Status SceneRenderer::make()
         if (!made) return made.error();
         *target = std::move(*made);
     }
-    gBuffer = {depth.view(), normalRoughness.view(), baseColorMetallic.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    gBuffer = {.depth = depth.view(),
+               .normalRoughness = normalRoughness.view(),
+               .baseColorMetallic = baseColorMetallic.view(),
+               .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+               .pictureBefore = beauty.view(), // until a frame writes its own over it
+               .pictureLayout = VK_IMAGE_LAYOUT_GENERAL};
     // Once: the images of the G-buffer stay the same in all frames.
     indirect->setInputs(gBuffer);
 

@@ -12,6 +12,8 @@ const uint kFrameBinding = 3u;
 const uint kTileBinding = 8u;
 const uint kPackedBinding = 13u; // packed_pixel.glsl
 const uint kMovingBinding = 12u; // shapes that move, of passes that ask them
+const uint kPictureBeforeBinding = 6u; // screen_trace.glsl
+const uint kScreenBinding = 7u;
 
 // Of each pass.
 const uint kTraceLightBinding = 4u; // trace_glossy.comp
@@ -70,6 +72,7 @@ const uint kMovingId = 27u;    // trace_glossy.comp, temporal.comp: whether shap
 const uint kMovingBoxesId = 29u; // moving_light.comp: of boxes, else of round shapes
 const uint kSurfaceProbesId = 31u; // surface_light.comp
 const uint kUntintedId = 30u;    // trace_glossy.comp, reconstruct.comp: the filters after it work on light before the surface's tint, and give it back
+const uint kScreenId = 32u;      // trace_glossy.comp: rays meet what the picture of the frame before shows
 const uint kMovingLooksId = 28u; // moving_light.comp: the field has prefiltered radiance, which tells what a shape hides
 
 struct DenoisePush

@@ -1,5 +1,7 @@
 // Light of a flat polygon of up to four corners that shines evenly, without what stands before it. Shared text, see texel.h; needs brdf_text.h.
 // Corners are relative to the lit point, in its tangent space (z along the normal); of a triangle one comes twice.
+#if defined(__cplusplus) || !defined(SCONCE_POLYGON_LIGHT)
+#define SCONCE_POLYGON_LIGHT
 
 /// What an edge between directions of any length adds to twice the mean direction of a polygon's solid angle: the angle between them, along
 /// their common normal (Lambert 1760, "Photometria"; Baum, Rushmeier and Winget 1989, "Improving Radiosity Solutions through the Use of
@@ -87,3 +89,5 @@ SCONCE_PURE vec3 polygonReflected(BrdfLobes lobes, real alpha, vec3 view, vec3 a
     vec3 color = lobes.atNormal + lobes.atEdge * schlick(vh);
     return color * (share * smithVisibility(nl, view.z, alpha) * nl * real(4.0) * vh / halfway.z);
 }
+
+#endif

@@ -130,6 +130,7 @@ std::vector<LiveKnob> makeLiveKnobs()
             optionalLive(knobs::roughness, SCONCE_AT(frame.roughness)),
             denoiseKnob(),
             live<bool>(knobs::temporal, SCONCE_AT(frame.temporal)),
+            live<bool>(knobs::screenTrace, SCONCE_AT(frame.screenTrace)),
             live<float>(knobs::normalOffset, SCONCE_AT(normalOffset)),
             live<uint32_t>(knobs::frameSeed, SCONCE_AT(frame.seed)),
             live<int>(knobs::ranked, SCONCE_AT(quality.trace.ranked)),

@@ -26,7 +26,7 @@ bool sameLight(const LightChoice& a, const LightChoice& b)
 auto flagsOf(const IndirectEffects& e)
 {
     return std::array{e.diffuse, e.surfaceLight, e.tracedDiffuse, e.patches,  e.fieldShadows, e.rough,
-                      e.glossy,  e.mirror,       e.denoise,       e.temporal, e.tiles};
+                      e.glossy,  e.mirror,       e.denoise,       e.temporal, e.screenTrace,  e.tiles};
 }
 
 /// What a renderer is made for, and can't change.

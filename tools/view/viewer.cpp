@@ -22,7 +22,8 @@ namespace sconce::tools
 namespace
 {
 
-constexpr float kLookSpeed = 0.003f; // radians a pixel of the mouse's way
+constexpr float kLookSpeed = 0.003f;     // radians a pixel of the mouse's way
+constexpr uint32_t kPictureSettles = 16; // frames, until what reflections show of reflections has come
 
 const Error kInterrupted{ErrorCode::cancelled, "Interrupted; the window was closed."};
 
@@ -83,6 +84,7 @@ private:
     ViewKnobs applied;
     LightChoice appliedLight;
     bool drawn = false;             // the last frame is of the state as it is now
+    uint32_t stillFrames = 0;       // drawn since it or the camera has changed
     bool exposed = false;           // state.shown.exposure is of the picture
     uint32_t width = 0, height = 0; // of the picture
     Camera lastCamera;
@@ -255,7 +257,11 @@ void Viewer::followReference()
 /// Whether the picture as it was drawn is still right, and time is better spent on the reference, or not at all.
 bool Viewer::rests() const
 {
-    const bool still = drawn && sameCamera(lastCamera, state.camera) && !session->settings().effects.temporal && session->settled();
+    const IndirectEffects& effects = session->settings().effects;
+    // Reflections of what the frame before showed are of a frame more each time.
+    const bool asksPicture = effects.screenTrace && (effects.glossy || effects.mirror);
+    const bool still = drawn && sameCamera(lastCamera, state.camera) && !effects.temporal &&
+                       stillFrames >= (asksPicture ? kPictureSettles : 1) && session->settled();
     return still && !scripted && (state.shown.compare != 0 || !state.keepDrawing);
 }
 
@@ -271,6 +277,7 @@ Status Viewer::frame(WindowPicture* grab)
     if (Status done = expose(); !done) return done;
     if (resting || state.shown.exposure != before)
         if (Status made = session->redraw(state.shown); !made) return made;
+    if (!resting) stillFrames = drawn && sameCamera(lastCamera, state.camera) ? stillFrames + 1 : 1;
     drawn = true;
     lastCamera = state.camera;
     const bool withPanel = state.panel;

@@ -15,7 +15,7 @@ import sys
 # A sampled image's format is the host's alone.
 G_BUFFER = {"gDepth": 4, "gNormalRoughness": 8, "gBaseColorMetallic": 8, "gGeometricNormal": 4}  # as SceneRenderer::make() has them
 EMISSION = 8  # which is drawn beside them, into the direct light
-SAMPLED = {"direct": 8, "diffuse": 8, "rough": 8, "glossy": 8, "mirror": 8, "before": 8, "pointsBefore": 4}  # light as it is stored, and its points
+SAMPLED = {"direct": 8, "diffuse": 8, "rough": 8, "glossy": 8, "mirror": 8, "before": 8, "pointsBefore": 4, "pictureBefore": 16}  # light as it is stored, and its points
 TEXEL_BYTES = {1: 16, 2: 8, 3: 4, 30: 16, 33: 4, 35: 8}  # of SPIR-V's formats: Rgba32f, Rgba16f, R32f, Rgba32ui, R32ui, Rg32ui
 READ_PIXEL = {"gDepth", "gNormalRoughness", "gBaseColorMetallic"}
 # The command's frame without layers: passes, how often each runs, and images that it doesn't touch.
@@ -24,7 +24,7 @@ FRAME = {
     "classify tiles": ("classify_tiles_comp", 1, set()),
     "surface light": ("surface_light_comp", 1, READ_PIXEL),  # of the few look-ups that are left to its second dispatch
     "gather light": ("gather_light_comp", 1, set()),
-    "glossy or mirror trace": ("trace_glossy_comp", 1, {"counts", "packedPixels"}),
+    "glossy or mirror trace": ("trace_glossy_comp", 1, {"counts", "packedPixels", "pictureBefore"}),
     "glossy denoise, steps 1 to 3": ("denoise_comp", 3, READ_PIXEL),
     "glossy denoise, last step": ("denoise_comp", 1, set()),
     "compose": ("compose_comp", 1, {"diffuseLayer", "glossyLayer", "mirror"}),
@@ -37,6 +37,7 @@ MORE = {
     "area light": ("area_light_comp", 1, set()),
     "diffuse denoise": ("denoise_comp", 4, READ_PIXEL),
     "moving shapes": ("moving_light_comp", 1, set()),
+    "glossy or mirror trace over the picture": ("trace_glossy_comp", 1, {"counts", "packedPixels"}),
 }
 
 

@@ -23,6 +23,7 @@ TRACE = {"trace_glossy_comp", "trace_rays_comp"}
 # What a field is, as kFieldFlagsId says it, and the passes that are compiled for it; none: all.
 FORMS = {
     "": ("0=4", set()),  # kByTexels: words come through texel buffers
+    ", picture": ("0=4,32=1", {"trace_glossy_comp"}),  # and kScreenId
     ", compact": ("0=516", TRACE | {"surface_light_comp", "gather_light_comp"}),  # and kMapsInBlocks
 }
 
@@ -48,7 +49,7 @@ def found_now(program, build):
         chosen = [file for file in files if not only or pathlib.Path(file).stem in only]
         environment = os.environ | {"VK_ICD_FILENAMES": radv(), "VK_DRIVER_FILES": radv(), "RADV_FORCE_FAMILY": FAMILY, "RADV_PERFTEST": wish}
         environment.pop("SCONCE_VALIDATION", None)  # nothing runs
-        done = subprocess.run([program, *chosen, "--constant", flags], env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run([program, *chosen, *(word for flag in flags.split(",") for word in ("--constant", flag))], env=environment, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             sys.exit(f"{pathlib.Path(program).name} gave {done.returncode}: {done.stderr}")
         answer = json.loads(done.stdout)

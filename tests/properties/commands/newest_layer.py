@@ -44,7 +44,7 @@ def main():
         # Light through the field's maps: several bounces by one pipeline, each through another light field.
         run("bake", "cornell", *baked, "--surface-texels", 0, "-o", field)
         run("bake", "cornell-glossy", *baked, "--live-links", 8, "-o", field)
-        run("render", "cornell-glossy", "--field", field, "--size", "48x32", "--effects", "all", "--temporal", "--trace-every", 4, "--frames", 2, "-o", seen)
+        run("render", "cornell-glossy", "--field", field, "--size", "48x32", "--effects", "all", "--temporal", "--screen-trace", "--trace-every", 4, "--frames", 2, "-o", seen)
         run("render", "cornell-glossy", "--field", field, "--size", "48x32", "--diffuse", "traced", "-o", seen)
         run("relight", field, "--sun", "0.3,-1,0.2", "-o", folder / "lit.sconce")
 

@@ -85,7 +85,7 @@ std::map<std::string, std::string> filesOf(const TestFolder& folder, bool all)
           {bake, {"--compact"}, "compact.sconce"},
           {bake, {"--gather", "field"}, "through.sconce"},
           {none, {"relight", folder / "live.sconce", "--lights", folder / "lights.json", "-q"}, "relit.sconce"},
-          {render, {"--field", folder / "f.sconce", "--effects", "all", "--temporal", "--frames", "2"}, "all.exr", true},
+          {render, {"--field", folder / "f.sconce", "--effects", "all", "--temporal", "--screen-trace", "--frames", "2"}, "all.exr", true},
           {render, {"--field", folder / "live.sconce", "--shapes", folder / "shapes.json"}, "shapes.exr"},
           {render, {"--field", folder / "f.sconce", "--diffuse", "traced", "--trace-every", "4"}, "traced.exr"},
           {render, {"--field", folder / "f.sconce", "--diffuse", "irradiance", "--area-shadows", "field"}, "samples.exr"},

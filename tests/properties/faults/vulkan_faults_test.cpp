@@ -428,7 +428,7 @@ TEST_F(VulkanFaults, OfFrames)
             if (!drawn) return drawn.error();
             RenderSettings settings;
             settings.width = settings.height = 16;
-            settings.effects.temporal = true;
+            settings.effects.temporal = settings.effects.screenTrace = true;
             settings.shapes.resize(1);
             auto renderer = SceneRenderer::create(host->gpu(), *drawn, *loaded, settings);
             if (!renderer) return renderer.error();

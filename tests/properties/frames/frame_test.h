@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstring>
 #include <map>
 #include <optional>
 
@@ -80,6 +81,30 @@ protected:
             });
         EXPECT_TRUE(status);
         return std::move(*made);
+    }
+
+    /// Of an image of two words a pixel, in the layout in which passes store.
+    std::vector<uint32_t> wordsOf(const GpuImage& image, uint32_t width, uint32_t height)
+    {
+        std::vector<uint32_t> words(size_t(2) * width * height);
+        auto buffer = gpu().makeBuffer(4 * words.size(), 0, MemoryUse::readback, "read back");
+        EXPECT_TRUE(buffer);
+        const Status status = gpu().submit(
+            [&](VkCommandBuffer cmd)
+            {
+                transition(gpu(), cmd, image,
+                           {VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                            VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+                VkBufferImageCopy copy{};
+                copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                copy.imageExtent = {width, height, 1};
+                gpu().vk.CmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer->handle(), 1, &copy);
+                memoryBarrier(gpu(), cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                              VK_ACCESS_2_HOST_READ_BIT);
+            });
+        EXPECT_TRUE(status);
+        std::memcpy(words.data(), buffer->mapped(), 4 * words.size());
+        return words;
     }
 
     /// @param drawn  what is in the picture; it may differ from what the field was baked from

@@ -1,7 +1,6 @@
 // A host's G-buffer with numbers that are none, in some pixels of each image: they stay where they are.
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -34,30 +33,6 @@ protected:
         setenv("SCONCE_NAN_SCAN", "1", 1); // a submit fails with the first bad number that a pass writes
     }
     void TearDown() override { setenv("SCONCE_NAN_SCAN", before.c_str(), 1); }
-
-    /// Of an image of two words a pixel.
-    std::vector<uint32_t> wordsOf(const GpuImage& image)
-    {
-        std::vector<uint32_t> words(size_t(2) * kSide * kSide);
-        auto buffer = gpu().makeBuffer(4 * words.size(), 0, MemoryUse::readback, "read back");
-        EXPECT_TRUE(buffer);
-        const Status status = gpu().submit(
-            [&](VkCommandBuffer cmd)
-            {
-                transition(gpu(), cmd, image,
-                           {VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                            VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
-                VkBufferImageCopy copy{};
-                copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-                copy.imageExtent = {kSide, kSide, 1};
-                gpu().vk.CmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer->handle(), 1, &copy);
-                memoryBarrier(gpu(), cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
-                              VK_ACCESS_2_HOST_READ_BIT);
-            });
-        EXPECT_TRUE(status);
-        std::memcpy(words.data(), buffer->mapped(), 4 * words.size());
-        return words;
-    }
 
     std::string before;
 };
@@ -94,13 +69,19 @@ TEST_F(HostInputs, NumbersThatAreNoneInTheGBufferSpreadToNoOtherPixel)
     normal[0] = glm::vec4(0, 0, 0, 0.3f); // of no length
     const GpuImage depthImage = image(depth, kSide, "host's depth"), normalImage = image(normal, kSide, "host's normals"),
                    baseImage = image(base, kSide, "host's base colour");
+    std::vector<glm::vec4> picture(depth.size(), glm::vec4(0.5f));
+    for (size_t i = 0; i < picture.size(); i += 3) picture[i][int(i % 4)] = odd[i % 5];
+    const GpuImage pictureImage = image(picture, kSide, "host's picture");
 
     IndirectLight::Desc desc;
     desc.width = desc.height = kSide;
-    desc.effects.temporal = true;
+    desc.effects.temporal = desc.effects.screenTrace = true;
     auto indirect = makeIndirectLight(gpu(), *light, desc);
     ASSERT_TRUE(indirect) << indirect.error().message;
-    indirect->setInputs({depthImage.view(), normalImage.view(), baseImage.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    indirect->setInputs({.depth = depthImage.view(),
+                         .normalRoughness = normalImage.view(),
+                         .baseColorMetallic = baseImage.view(),
+                         .pictureBefore = pictureImage.view()});
     gpu::FrameView view{};
     const vec3 eye(0.0f, 1.0f, 0.9f);
     view.worldFromClip = mat4(vec4(0.5f * kNear, 0, 0, 0), vec4(0, -0.5f * kNear, 0, 0), vec4(eye, 1), vec4(0, 0, -kNear, 0));
@@ -150,7 +131,7 @@ TEST_F(HostInputs, AViewOfAnotherSizeIsDrawnAtThatOfThePasses)
         view.fieldFromNormals = mat3(rays == 0 ? 0.0f : 1.0f);
         const auto status = gpu().submit([&](VkCommandBuffer cmd) { indirect->record(cmd, view); });
         ASSERT_TRUE(status) << status.error().message;
-        drawn.push_back(wordsOf(indirect->state().diffuseImage));
+        drawn.push_back(wordsOf(indirect->state().diffuseImage, kSide, kSide));
     }
     EXPECT_EQ(drawn[0], drawn[1]);
     EXPECT_NE(*std::ranges::max_element(drawn[0]), 0u);

@@ -44,6 +44,7 @@ TEST(LiveKnobs, BeginAtTheDefaultsOfTheLibrary)
     EXPECT_EQ(knob("roughness").get(fresh), "default");
     EXPECT_EQ(knob("denoise").get(fresh), "on");
     EXPECT_EQ(knob("temporal").get(fresh), "off");
+    EXPECT_EQ(knob("screenTrace").get(fresh), "off");
     EXPECT_EQ(knob("raysBelow").get(fresh), knobText(knobs::raysBelow.value));
     EXPECT_EQ(knob("ranked").get(fresh), knobText(knobs::ranked.value));
 }
@@ -51,12 +52,12 @@ TEST(LiveKnobs, BeginAtTheDefaultsOfTheLibrary)
 TEST(LiveKnobs, WhatIsSetIsReadAndChangesNothingElse)
 {
     const std::pair<const char*, const char*> values[] = {
-        {"exposure", "2.5"},    {"glossyRays", "4"},    {"diffuse", "traced"}, {"areaShadows", "field"},
-        {"areaSamples", "32"},  {"surfaceProbes", "1"}, {"traceEvery", "8"},   {"raysBelow", "0.7"},
-        {"roughness", "0"},     {"denoise", "off"},     {"temporal", "on"},    {"normalOffset", "0.001"},
-        {"seed", "4000000000"}, {"ranked", "2"},        {"opinion", "0.01"},   {"maxHandoffs", "0"},
-        {"startLevel", "6"},    {"coarsestLevel", "2"}, {"tolerance", "0.5"},  {"epsilon", "0.001"},
-        {"farBounds", "1"},     {"order", "3"}};
+        {"exposure", "2.5"},       {"glossyRays", "4"},    {"diffuse", "traced"},  {"areaShadows", "field"},
+        {"areaSamples", "32"},     {"surfaceProbes", "1"}, {"traceEvery", "8"},    {"raysBelow", "0.7"},
+        {"roughness", "0"},        {"denoise", "off"},     {"temporal", "on"},     {"screenTrace", "on"},
+        {"normalOffset", "0.001"}, {"seed", "4000000000"}, {"ranked", "2"},        {"opinion", "0.01"},
+        {"maxHandoffs", "0"},      {"startLevel", "6"},    {"coarsestLevel", "2"}, {"tolerance", "0.5"},
+        {"epsilon", "0.001"},      {"farBounds", "1"},     {"order", "3"}};
     EXPECT_EQ(std::size(values), liveKnobs().size());
     for (const auto& [name, value] : values)
     {
