@@ -1,7 +1,7 @@
 // Where a ray meets what the picture shows: its way over the host's depth, and the light that the frame before drew there. What no probe knows, an actor, a
 // thing that was moved, is reflected all the same, and what probes see coarsely is as fine as pixels. After gbuffer_read.glsl, light_field.glsl and lamps.glsl.
 // In the manner of McGuire and Mara 2014, "Efficient GPU Screen-Space Ray Tracing", section 3: depth is linear along a ray over the picture, too. Other than
-// there no thickness is guessed: a ray meets a surface where it meets a pixel's plane within the pixel, and what may stand behind an edge is left to the field.
+// there no thickness is guessed: a ray meets a surface where it meets a pixel's plane within the pixel, and of one that has gone behind something the field says more.
 layout(set = 1, binding = kPictureBeforeBinding) uniform texture2D pictureBefore; // rgb: radiance to the eye
 layout(scalar, set = 1, binding = kScreenBinding) uniform SconceScreen { mat4 clipFromWorld; }; // of this frame, w > 0 before the eye
 
@@ -67,7 +67,8 @@ struct ScreenHit
     float sure; // [0,1]: about the chance that it is met there; 0: nothing is
     vec3 place; // world
     float width; // of a pixel there, metres
-    Pixel surface;
+    bool hidden; // it went behind something before, where more may stand
+    ivec2 at;    // the pixel that shows it
 };
 
 /// Whether the ray meets the surface of a pixel: its plane, within the pixel.
@@ -90,13 +91,14 @@ void meetPixel(vec3 origin, vec3 direction, ScreenWay way, float along, inout Sc
     float off = abs(dot(plane, worldAt(there, depthAt(there)) - q.position)) / width;
     float sure = (1.0 - smoothstep(kScreenSure, kScreenUnsure, distance(seen, vec2(at) + 0.5))) * (1.0 - smoothstep(kScreenOff, 2.0 * kScreenOff, off));
     if (!(sure > 0.0)) return;
-    hit = ScreenHit(t, kScreenMostSure * sure, place, width, q);
+    hit = ScreenHit(t, kScreenMostSure * sure, place, width, hit.hidden, at);
 }
 
 ScreenHit screenHit(vec3 origin, vec3 direction, float longest)
 {
     ScreenHit hit;
     hit.sure = hit.t = 0.0;
+    hit.hidden = false;
     ScreenWay way = screenWay(origin, direction, longest);
     float last = 0.0;
     bool before = true;
@@ -115,6 +117,7 @@ ScreenHit screenHit(vec3 origin, vec3 direction, float longest)
             }
             meetPixel(origin, direction, way, high, hit);
             if (hit.sure > 0.0) return hit;
+            hit.hidden = true;
         }
         before = now;
         last = along;
@@ -178,17 +181,18 @@ void meetScreen(vec3 origin, vec3 direction, inout RayHit hit)
     ScreenHit seen = screenHit(origin, direction, 2.0 * field.diagonal * field.scale);
     if (!(seen.sure > 0.0)) return;
     float known = hit.status == kHit ? hit.t : 1e30;
-    if (seen.t > known + same && !isSeenToBeEmpty(hit.position, same)) return;
+    bool isSame = abs(seen.t - known) <= same;
+    if (!isSame && (seen.hidden || (seen.t > known && !isSeenToBeEmpty(hit.position, same)))) return;
     // A lamp's own light is in no ray: it is evaluated where it falls. Pixels beside it have some of it, too.
     vec3 point = (seen.place - field.origin) / field.scale;
-    bool isSame = abs(seen.t - known) <= same, isLamp = lampCount > 0u && isOfLamp(point, field.diagonal, max(same, 1.5 * seen.width) / field.scale);
+    bool isLamp = lampCount > 0u && isOfLamp(point, field.diagonal, max(same, 1.5 * seen.width) / field.scale);
     if (isSame && isLamp) return;
     vec4 light = lightBefore(seen.place);
     float sure = seen.sure * light.a;
     if (isLamp) light.rgb = vec3(0.0);
     if (isSame)
     {
-        sure *= scatteredShare(seen.surface);
+        sure *= scatteredShare(readPixel(seen.at));
         light.rgb *= min(1.0, kScreenMostBright * luminance(hit.radiance) / max(luminance(light.rgb), 1e-30));
     }
     hit.radiance = mix(hit.radiance, light.rgb, sure);
@@ -196,5 +200,5 @@ void meetScreen(vec3 origin, vec3 direction, inout RayHit hit)
     hit.status = kHit;
     hit.t = seen.t;
     hit.position = seen.place;
-    hit.normal = seen.surface.normal;
+    hit.normal = frame.fieldFromNormals * texelFetch(gNormalRoughness, seen.at, 0).xyz;
 }

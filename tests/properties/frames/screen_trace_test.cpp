@@ -94,7 +94,7 @@ protected:
     {
         ReferenceSettings reference;
         reference.width = reference.height = kSide;
-        reference.samples = 512;
+        reference.samples = 192;
         reference.bounces = 8;
         reference.pixelCentre = true;
         reference.guides = false;
