@@ -5,10 +5,10 @@
 layout(set = 1, binding = kPictureBeforeBinding) uniform texture2D pictureBefore; // rgb: radiance to the eye
 layout(scalar, set = 1, binding = kScreenBinding) uniform SconceScreen { mat4 clipFromWorld; }; // of this frame, w > 0 before the eye
 
-const int kScreenSteps = 96;         // reads of depth at most, until one is behind a surface; over 4,000 pixels
+const int kScreenSteps = 64;         // reads of depth at most, until one is behind a surface; over 4,000 pixels
 const float kScreenFirst = 1.5;      // pixels from the ray's own to the first step
-const float kScreenGrowth = 0.08;    // of the way so far, a step's length; at least a pixel
-const int kScreenHalvings = 6;       // of the step that went behind a surface
+const float kScreenGrowth = 0.15;    // of the way so far, a step's length; at least a pixel
+const int kScreenHalvings = 8;       // of the step that went behind a surface
 const float kScreenNearest = 0.05;   // of the ray's start from the eye's plane, that a ray towards the eye is followed to
 const float kScreenEdge = 0.06;      // of the picture, over which its edge hands over to the field
 const float kScreenSame = 2e-3;      // of the diagonal, within which both have met one surface
@@ -178,11 +178,11 @@ void meetScreen(vec3 origin, vec3 direction, inout RayHit hit)
 {
     if (frame.follows == 0u) return; // there is no frame before
     float same = kScreenSame * field.diagonal * field.scale;
-    ScreenHit seen = screenHit(origin, direction, 2.0 * field.diagonal * field.scale);
+    float known = hit.status == kHit ? hit.t : 1e30, whole = 2.0 * field.diagonal * field.scale;
+    ScreenHit seen = screenHit(origin, direction, known < whole && !isSeenToBeEmpty(hit.position, same) ? known + same : whole);
     if (!(seen.sure > 0.0)) return;
-    float known = hit.status == kHit ? hit.t : 1e30;
     bool isSame = abs(seen.t - known) <= same;
-    if (!isSame && (seen.hidden || (seen.t > known && !isSeenToBeEmpty(hit.position, same)))) return;
+    if (!isSame && seen.hidden) return;
     // A lamp's own light is in no ray: it is evaluated where it falls. Pixels beside it have some of it, too.
     vec3 point = (seen.place - field.origin) / field.scale;
     bool isLamp = lampCount > 0u && isOfLamp(point, field.diagonal, max(same, 1.5 * seen.width) / field.scale);
