@@ -322,7 +322,8 @@ public:
     ~IndirectLight();
 
     /// Binds the G-buffer; before the first record and whenever its views change. Not between a record and the end of what it recorded on
-    /// the GPU: a host that alternates two G-buffers while frames are in flight makes an IndirectLight of each. Views are not null.
+    /// the GPU: a host that alternates two G-buffers while frames are in flight makes an IndirectLight of each. Views that are read are not
+    /// null.
     void setInputs(const FrameInputs& inputs);
     /// What moves, from the next recorded frame on; none before the first call. With the effect `temporal`, FrameView::follows =
     /// kFollowsChange while anything moves. Cost: of a pixel grows with the shapes within 16 times their size of its tile; a ray asks every

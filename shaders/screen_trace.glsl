@@ -8,14 +8,14 @@ layout(scalar, set = 1, binding = kScreenBinding) uniform SconceScreen { mat4 cl
 const int kScreenSteps = 64;         // reads of depth at most, until one is behind a surface; over 4,000 pixels
 const float kScreenFirst = 1.5;      // pixels from the ray's own to the first step
 const float kScreenGrowth = 0.15;    // of the way so far, a step's length; at least a pixel
-const int kScreenHalvings = 8;       // of the step that went behind a surface
+const int kScreenHalvings = 10;      // of the step that went behind a surface
 const float kScreenNearest = 0.05;   // of the ray's start from the eye's plane, that a ray towards the eye is followed to
-const float kScreenEdge = 0.06;      // of the picture, over which its edge hands over to the field
+const float kScreenEdge = 0.03;      // of the picture, over which its edge hands over to the field
 const float kScreenSame = 2e-3;      // of the diagonal, within which both have met one surface
 const float kScreenSure = 1.0;       // pixels from a pixel's middle up to which the ray meets its plane
 const float kScreenUnsure = 2.5;     // and beyond which it doesn't
 const float kScreenOff = 0.25;       // pixels' widths off that plane, up to which the picture shows it there; at twice as many it doesn't
-const float kScreenMostSure = 0.95;  // 0.97 and more are right (tests); below 1, too, so that what mirrors show of each other fades
+const float kScreenMostSure = 0.95;  // 0.965 and more of those not beyond the field's hit are right (tests); below 1, too, so that what mirrors show of each other fades
 const float kScreenMostBright = 4.0; // times what the field has for the same surface: more is what the eye alone is sent
 
 /// A ray's way over the picture, along which place and depth are linear.
@@ -53,11 +53,11 @@ ivec2 pixelAlong(ScreenWay way, float along) { return clamp(ivec2(way.start + al
 /// Whether the ray is before all that the picture shows there.
 bool isBefore(ScreenWay way, float along) { return way.depth + along * way.depthStep >= depthAt(pixelAlong(way, along)); }
 
-/// In pixels, of a place before the eye.
+/// In pixels; far off the picture where the place is behind the eye.
 vec2 screenPlace(vec3 place)
 {
     vec4 clip = clipFromWorld * vec4(place, 1.0);
-    return (0.5 * clip.xy / clip.w + 0.5) * vec2(frame.size);
+    return clip.w > 0.0 ? (0.5 * clip.xy / clip.w + 0.5) * vec2(frame.size) : vec2(-1e6);
 }
 
 /// What a ray meets in the picture.
@@ -81,14 +81,16 @@ void meetPixel(vec3 origin, vec3 direction, ScreenWay way, float along, inout Sc
     vec3 plane = geometricNormalAt(at, q); // shading normals may face a ray that leaves the surface
     if (dot(plane, plane) < 0.5) plane = q.normal;
     float facing = dot(plane, direction), away = dot(plane, origin - q.position);
+    float width = distance(q.position, worldAt(at + ivec2(1, 0), q.clip.z));
     if (!(facing < 0.0 && away > 0.0)) return;
     float t = -away / facing;
     vec3 place = origin + t * direction;
     // That pixel's plane goes on beside it, and so may the surface: the picture must show it where the ray meets the plane.
     vec2 seen = screenPlace(place);
     ivec2 there = ivec2(floor(seen));
-    float width = distance(q.position, worldAt(at + ivec2(1, 0), q.clip.z));
-    float off = abs(dot(plane, worldAt(there, depthAt(there)) - q.position)) / width;
+    float depth = depthAt(there);
+    if (!(depth > 0.0)) return;
+    float off = abs(dot(plane, worldAt(there, depth) - q.position)) / width;
     float sure = (1.0 - smoothstep(kScreenSure, kScreenUnsure, distance(seen, vec2(at) + 0.5))) * (1.0 - smoothstep(kScreenOff, 2.0 * kScreenOff, off));
     if (!(sure > 0.0)) return;
     hit = ScreenHit(t, kScreenMostSure * sure, place, width, hit.hidden, at);
@@ -129,8 +131,6 @@ ScreenHit screenHit(vec3 origin, vec3 direction, float longest)
 /// @param by  metres, at least
 bool isSeenToBeEmpty(vec3 place, float by)
 {
-    vec4 clip = clipFromWorld * vec4(place, 1.0);
-    if (!(clip.w > 0.0)) return false;
     ivec2 at = ivec2(floor(screenPlace(place)));
     if (any(lessThan(at, ivec2(1))) || any(greaterThanEqual(at, ivec2(frame.size) - 1))) return false;
     float nearest = distance(place, frame.eye) + by;
@@ -149,7 +149,7 @@ vec4 lightBefore(vec3 place)
     vec4 clip = frame.clipFromWorldBefore * vec4(place, 1.0);
     vec2 ndc = clip.xy / clip.w;
     if (!(clip.w > 0.0) || any(greaterThanEqual(abs(ndc), vec2(1.0)))) return vec4(0.0);
-    vec2 inside = clamp((1.0 - abs(ndc)) / kScreenEdge, 0.0, 1.0);
+    vec2 inside = clamp(0.5 * (1.0 - abs(ndc)) / kScreenEdge, 0.0, 1.0);
     vec2 pixel = (0.5 * ndc + 0.5) * vec2(frame.size) - 0.5;
     ivec2 low = ivec2(floor(pixel)), most = ivec2(frame.size) - 1;
     vec2 f = pixel - vec2(low);
@@ -179,8 +179,9 @@ void meetScreen(vec3 origin, vec3 direction, inout RayHit hit)
     if (frame.follows == 0u) return; // there is no frame before
     float same = kScreenSame * field.diagonal * field.scale;
     float known = hit.status == kHit ? hit.t : 1e30, whole = 2.0 * field.diagonal * field.scale;
-    ScreenHit seen = screenHit(origin, direction, known < whole && !isSeenToBeEmpty(hit.position, same) ? known + same : whole);
-    if (!(seen.sure > 0.0)) return;
+    float farthest = known < whole && !isSeenToBeEmpty(hit.position, same) ? known + same : whole;
+    ScreenHit seen = screenHit(origin, direction, farthest);
+    if (!(seen.sure > 0.0) || seen.t > farthest) return;
     bool isSame = abs(seen.t - known) <= same;
     if (!isSame && seen.hidden) return;
     // A lamp's own light is in no ray: it is evaluated where it falls. Pixels beside it have some of it, too.

@@ -489,7 +489,7 @@ Json reportOf(const RenderOptions& options, const Asked& asked, const OnDevice& 
     json["diffuse"] = asked.diffuse;
     json["area_shadows"] = options.areaShadows;
     json["temporal"] = settings.effects.temporal;
-    json["screen_trace"] = settings.effects.screenTrace;
+    json["screen_trace"] = settings.effects.screenTrace && (settings.effects.glossy || settings.effects.mirror);
     json["frames"] = options.frames;
     json["dim"] = options.dims;
     json["shapes"] = options.shapes.file;

@@ -2,7 +2,7 @@
 # All methods at their best over eight views, in one run a view: writes bench/results/scene_methods.json and scene_targets.json. What is measured already by
 # the same build is not measured again, so an interrupted run goes on; about two hours on 2 idle cores, and nothing else may run beside it.
 # methods_table.sh [VIEW]... of cornell, mcguire, modern_hall, hall, sponza, temple, town, zdm2; without any all, and the files are written.
-# Environment: SCONCE=the command, built when not given, RESOLUTION=texels of ours [192], SPP=paths a pixel of a reference's batches [1024], OUT=folder,
+# Environment: SCONCE=the command, built when not given, RESOLUTION=texels of ours [192], SPP=paths a pixel of a reference's batches [1024; Sponza, whose methods differ by less, 8192], OUT=folder,
 # whose measurements are kept [out/methods].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -28,7 +28,9 @@ views=("$@")
 for view in "${views[@]}"; do
     line=$(arguments_of "$view")
     read -ra arguments <<< "$line"
-    "$sconce" bench "${arguments[@]}" --methods-only --resolution "${RESOLUTION:-192}" --spp "${SPP:-1024}" --quiet -o "$out/$view" > /dev/null
+    paths=1024
+    [[ $view != sponza ]] || paths=8192
+    "$sconce" bench "${arguments[@]}" --methods-only --resolution "${RESOLUTION:-192}" --spp "${SPP:-$paths}" --quiet -o "$out/$view" > /dev/null
     echo "$view: measured" >&2
 done
 [[ $# -eq 0 ]] || exit 0

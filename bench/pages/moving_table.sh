@@ -39,7 +39,7 @@ print(",".join(f"{p + s * (q - p):.4g}" for p, q in zip(a, b)))' "$from" "$to" "
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --frames 3 -o "$pose.told.exr" --png "$pose.png" --json --quiet > "$pose.told.json"
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --drawn-only --frames 3 -o "$pose.untold.exr" --json --quiet > "$pose.untold.json"
             "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --drawn-only --screen-trace --frames 5 -o "$pose.seen.exr" --json --quiet > "$pose.seen.json"
-            "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --screen-trace --frames 5 -o "$pose.both.exr" --png "$pose.both.png" --json --quiet > "$pose.both.json"
+            "$sconce" render "$scene" "${camera[@]}" --field "$at.sconce" --shapes "$pose.json" --screen-trace --frames 5 -o "$pose.both.exr" --json --quiet > "$pose.both.json"
             for picture in told untold seen both; do
                 for mask in "diffuse_indirect" "glossy_indirect" "beauty --new-surface"; do
                     "$sconce" compare "$pose.$picture.exr" "$pose.ref.exr" --changed-from "$at.ref.exr" --layer ${mask} --metric mse,relmse,mean --json > "$pose.$picture.${mask%% *}.error.json" 2> /dev/null || echo '{}' > "$pose.$picture.${mask%% *}.error.json" # nothing has changed there

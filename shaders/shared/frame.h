@@ -17,7 +17,7 @@ struct FrameView
     uint follows;        // 1: the frame follows the one that was recorded before; 0: it is the first, or the camera was cut; more: it follows, and
                          // a history counts for at most so many frames, since light has changed: see kFollowsChange
     vec3 eyeBefore;      // of the frame before, world, metres
-    mat4 clipFromWorldBefore; // x and y in [-1,1] over the picture before, w > 0 in front of the camera
+    mat4 clipFromWorldBefore; // x and y in [-1,1] over the picture before, w > 0 in front of the camera; of temporal and screenTrace
     mat3 fieldFromNormals; // turns the G-buffer's normals into the field's world; the identity where they are in it. See inFieldsWorld()
 };
 SCONCE_CHECK_SIZE(FrameView, 216);
