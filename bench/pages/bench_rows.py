@@ -603,6 +603,8 @@ def moving(arguments):
                 continue
             for way in ("seen", "both"): # by rays that meet what the picture shows, of shapes untold and told
                 of = [error for error in (load(f"{name}.{way}.{layer}.error") for name in names) if error]
+                if len(of) != len(pairs):
+                    sys.exit(f"{at}: {len(of)} of {len(pairs)} poses have errors of '{way}'")
                 row |= {f"{kind}_{mask}_{way}_mse_ratio": f"{sum(error['mse'] for error in of) / len(of) / total(1, 'mse'):.3f}",
                         f"{kind}_{mask}_{way}_relmse": f"{sum(error['relmse'] for error in of) / len(of):.4f}", f"{kind}_{mask}_{way}_mean": f"{sum(error['mean'] for error in of) / len(of):.3f}"}
         seen = [load(f"{name}.seen") for name in names]
