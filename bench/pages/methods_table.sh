@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # All methods at their best over eight views, in one run a view: writes bench/results/scene_methods.json and scene_targets.json. What is measured already by
-# the same build is not measured again, so an interrupted run goes on; about two hours on 2 idle cores, and nothing else may run beside it.
+# the same build is not measured again, so an interrupted run goes on; about two and a half hours on 2 idle cores, and nothing else may run beside it.
 # methods_table.sh [VIEW]... of cornell, mcguire, modern_hall, hall, sponza, temple, town, zdm2; without any all, and the files are written.
 # Environment: SCONCE=the command, built when not given, RESOLUTION=texels of ours [192], SPP=paths a pixel of a reference's batches [1024; Sponza, whose methods differ by less, 8192], OUT=folder,
 # whose measurements are kept [out/methods].
